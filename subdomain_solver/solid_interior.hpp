@@ -119,6 +119,7 @@ class SolidInterior final : public Interior,
   void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
   template <class Energy>
   void keep_momenta(const Vector& momentum, double most, const Energy& energy);
+  std::optional<Failed> turned_otherwise(const Vector& momentum, double time);
   Vector nodal_momentum();
   Eigen::MatrixXd free_motions(bool turns);
   Vector mean_motion();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
 #include "base/dense.hpp"
 #include "subdomain_solver/time/momentum_lag.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
@@ -65,6 +67,21 @@ void SolidInterior::shift_lag(double share) {
   const Eigen::MatrixXd heavy = motions.transpose() * (mass_ * motions);
   const Vector moved = share * (motions.transpose() * lag);
   view(v) += motions * solve_symmetric(heavy, moved);
+}
+
+/// Where mass comes to lie further inside, a body has to turn faster, and its energy may not last
+/// for that: fails where its angular momentum is another one now than that of the momentum [kg m/s]
+/// that the nodes had, by more than a small part of all that they add to it.
+std::optional<Failed> SolidInterior::turned_otherwise(const Vector& momentum, double time) {
+  constexpr double small = 2.0e-3;
+  if (parts_.reduced) return std::nullopt;
+  const Eigen::MatrixXd motions = free_motions(true);
+  const Vector missing = motions.transpose() * (momentum - nodal_momentum());
+  const Vector all = motions.cwiseAbs().transpose() * momentum.cwiseAbs();
+  if ((missing.cwiseAbs().array() <= small * all.array()).all()) return std::nullopt;
+  return Failed{
+      Failed::Cause::no_convergence, time,
+      fmt::format("body '{}' would lose angular momentum by a change of form", description_.name)};
 }
 
 /// Forces of ties [N] (port values) that accelerations do not know become none: they are constant

@@ -306,6 +306,10 @@ std::optional<Failed> SolidInterior::leave(double time, double& lost) {
     return parts_.scheme.integrator->kinetic(state_.motion) + state_.motion.stored;
   };
   keep_momenta(momentum, present, total);
+  if (auto failed = turned_otherwise(momentum, time)) {
+    state_ = before;
+    return failed;
+  }
   lost = present - total();
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
   return std::nullopt;

@@ -31,6 +31,8 @@ struct Verdict {
   TrialRun run, other;
   Again again = Again::fields;
   double difference = 0.0;  // of velocities or energies between the two, over the most
+  // The largest that starts make which differ by parts of 1e-9; asked where more differ than may.
+  double sensitivity = 0.0;
   std::string trouble;      // empty: all is as it should be
   View view;                // of the run that is not
 };
@@ -63,6 +65,7 @@ class Table {
 
   std::map<int, Row> rows_;  // by dimension
   std::map<Again, Pairs> again_;
+  int unforetold_ = 0;  // pairs that may differ, as nearly the same starts do
 };
 
 double wall_seconds();
