@@ -282,12 +282,12 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
     integrator.able().statics->carry_to(carry.empty() ? carry
                                                       : carry.subspan(index(i - 1) * each, each));
   }
-  const double beside = lags() ? 1.0 - dt / parts_.scheme.step : 0.0;  // whole steps are so exactly
-  if (beside != 0.0) shift_lag(beside);
+  const double beside = 1.0 - dt / parts_.scheme.step;  // of whole steps 0 to the last bit
+  shift_lag(beside);
   if (std::optional<Failed> failed = integrator.step(state_.motion, begin, dt)) return failed;
   state_.time = window.grid.time(i);
   if (port_map_) follow_ports(state_.time);
-  if (beside != 0.0) shift_lag(-beside);
+  shift_lag(-beside);
   if (i < window.grid.count) return std::nullopt;
   // Passive forms take no cell that is crushed already. In more dimensions cells are not looked at:
   // it would cost as much as their forces.

@@ -71,7 +71,6 @@ class SolidInterior final : public Interior,
   };
 
   SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports);
-
   void state(Archive& archive) override;
   std::size_t coordinates() const override { return state_.motion.q.size(); }
   void restored() override;
@@ -90,7 +89,6 @@ class SolidInterior final : public Interior,
   double light_force(std::size_t port) const override;
   bool rest(std::size_t port) override;
   void wake() override;
-
   std::string misfit(int port, const PortKernel& kernel) const override;
   void react(std::size_t port, std::size_t partner, std::vector<double>& force) const override;
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
@@ -149,7 +147,6 @@ class SolidInterior final : public Interior,
   std::size_t nodal_values() const { return index(parts_.model->dofs()); }
   bool probed_as_linear() const;
   void see_nodes();
-  bool lags() const;
   void add_lag();
   void shift_lag(double share);
   void leave_out_unknown(std::vector<double>& forces) const;

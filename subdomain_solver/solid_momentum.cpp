@@ -28,15 +28,12 @@ std::array<bool, 3> held_axes(const FeModel& model, const std::vector<HeldCoordi
 
 }  // namespace
 
-bool SolidInterior::lags() const {
-  return state_.begun && !is_passive() && parts_.scheme.integrator->able().lag != nullptr;
-}
-
 /// To the momenta of the nodes, along the axes of space  [M.24].
 void SolidInterior::add_lag() {
-  if (!lags()) return;
+  const MomentumLag* lag = parts_.scheme.integrator->able().lag;
+  if (!state_.begun || is_passive() || lag == nullptr) return;
   const Motion& motion = state_.motion;
-  parts_.scheme.integrator->able().lag->find(motion, parts_.scheme.step, forces_now(), behind_);
+  lag->find(motion, parts_.scheme.step, forces_now(), behind_);
   Vector& nodes = parts_.reduced ? nodes_behind_ : behind_;
   if (parts_.reduced) {
     lag_.resize(nodal_values());
@@ -54,6 +51,7 @@ void SolidInterior::add_lag() {
 /// is told, which is of the scheme's step. Rigid motions that no support holds take this share of
 /// it [M.24]. What deforms stays as it is: stiff modes would gain up to the energy that they have.
 void SolidInterior::shift_lag(double share) {
+  if (share == 0.0 || parts_.scheme.integrator->able().lag == nullptr) return;
   std::vector<double>& v = state_.motion.v;
   if (parts_.reduced) {
     see_nodes();
