@@ -178,8 +178,7 @@ std::string line_of(const RandomScene& scene, const Verdict& verdict) {
       scene.free() && scene.turns() ? verdict.run.angular : 0.0, verdict.run.seconds,
       to_string(verdict.again), verdict.difference,
       verdict.sensitivity > 0.0 ? fmt::format("(nudged {:.1e}) ", verdict.sensitivity) : "",
-      scene.words(),
-      verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
+      scene.words(), verdict.trouble.empty() ? "" : "\n           " + verdict.trouble);
 }
 
 void Table::add(const RandomScene& scene, const Verdict& verdict) {
