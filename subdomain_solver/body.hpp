@@ -50,6 +50,7 @@ class Body final : public Subdomain {
   };
 
   void read_checkpoint(std::span<const std::byte> bytes);
+  void take_from(Archive& archive);
   PortKernel probe_dynamics(const Probing& asked, std::span<const int> seen);
   PortKernel probe_statics(const Probing& asked, std::span<const int> seen);
   /// A port as substeps see it.

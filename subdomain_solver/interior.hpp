@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/archive.hpp"
+#include "contract/hand_over.hpp"
 #include "contract/subdomain.hpp"
 #include "subdomain_solver/substeps.hpp"
 
@@ -74,6 +75,8 @@ class Successor {
  public:
   /// Reads that state. `statics`: it stood in balance. Throws RunError where it cannot go on.
   virtual void take_over(Archive& archive, bool statics) = 0;
+  /// The same from another model or mesh of the body. Throws RunError.
+  virtual void take_from(const HandOver& handed) = 0;
 
  protected:
   ~Successor() = default;

@@ -80,9 +80,9 @@ void SolidInterior::find_traits() {
 }
 
 void SolidInterior::find_abilities() {
+  able_.successor = this;
   if (ports_.empty()) return;
   able_.probed = this;
-  able_.successor = this;
   if (contact_) able_.obstructed = this;
   const Integrator::Abilities& scheme = parts_.scheme.integrator->able();
   if (scheme.foreseeing != nullptr && joins_ && !contact_) {
@@ -259,7 +259,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
     state_.time = time;
   }
   if (port_map_) port_map_->displacement(state_.motion.q, places_);
-  return std::nullopt;
+  return swapped_ ? settle_swap() : std::nullopt;
 }
 
 void SolidInterior::restored() {

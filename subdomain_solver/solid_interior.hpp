@@ -63,8 +63,7 @@ class SolidInterior final : public Interior,
     std::string rung = "fe";               // for people
     bool deforms = true;                   // there is stress to tell of
     std::vector<double> loose;             // Description::loose
-    // The body's own loads where all mass is on the nodes; empty: those of the problem.
-    std::vector<std::unique_ptr<Load>> whole_loads;
+    std::vector<std::unique_ptr<Load>> whole_loads;  // all mass on the nodes; empty: as problem's
     const RigidModel* rigid = nullptr;   // the problem's model, of a rigid body
     bool massive_surface = false;        // it has no layer, and takes obstacles when passive alone
     std::optional<double> pressed_over;  // [s] in which wanted interference grows; absent: none
@@ -95,6 +94,10 @@ class SolidInterior final : public Interior,
     return surfaces_ != nullptr ? surfaces_->reacting(port, partner) : nullptr;
   }
   void take_over(Archive& archive, bool statics) override;
+  void take_from(const HandOver& handed) override;
+  std::vector<double> amplitudes_of(std::vector<double> nodes) const;
+  std::optional<Failed> settle_swap();
+  void keep_momenta(const BodyRecord& before);
   double enter() override;
   std::optional<Failed> leave(double time, double& lost) override;
   double damp(double joules) override;
@@ -135,7 +138,6 @@ class SolidInterior final : public Interior,
     double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
     double crossed = 0.0;            // most pairs of facets that crossed each other, at records
   };
-
   bool stabilised() const {  // because contact alone holds it
     const QuasiStatic* statics = parts_.scheme.integrator->able().statics;
     return statics != nullptr && statics->stabilisation() != nullptr;
@@ -177,16 +179,15 @@ class SolidInterior final : public Interior,
   std::unique_ptr<SelfCrossings> crossings_;  // null: strains are small
   PortForces* port_forces_ = nullptr;         // owned by the problem, the last of its loads
   State state_;
+  std::optional<BodyRecord> swapped_;  // as another model has left the body; the begin settles it
   bool stands_ = false;         // it has taken over a state in balance, which no window has left
   std::vector<double> places_;  // [m] (port values)
   std::vector<double> worked_;  // [J] (ports) that came through them in the window so far
   PortValues seen_;
   int substep_ = 0;  // the last one of the window
-  // While the body is probed: the problem with its loads, and its model for small motions.
-  std::unique_ptr<Problem> loaded_;
-  std::unique_ptr<LinearisedModel> linearised_;
-  // Of the nodes (nodes, dim) along the axes of space, as see_nodes() left them.
-  std::vector<double> u_, v_;
+  std::unique_ptr<Problem> loaded_;  // the problem with its loads, while the body is probed
+  std::unique_ptr<LinearisedModel> linearised_;  // and its model for small motions
+  std::vector<double> u_, v_;  // (nodes, dim) along the axes of space, as see_nodes() left them
   std::vector<double> lag_;                  // [m/s] of velocities behind the impulses
   Vector momentum_, behind_, nodes_behind_;  // [kg m/s]; behind the impulses: of coordinates, nodes
   std::vector<double> before_, now_;         // [m], [N] (port values)

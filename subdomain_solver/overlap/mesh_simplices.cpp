@@ -5,14 +5,12 @@
 #include <cstddef>
 #include <span>
 
-#include "base/dense.hpp"
 #include "base/index.hpp"
+#include "subdomain_solver/fe/cell_finder.hpp"
 
 namespace abut {
 
 namespace {
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of nodes of a mesh, some after each other for every simplex.
 PosedSurface simplex_view(const Mesh& mesh, std::span<const std::int32_t> nodes,
@@ -32,16 +30,6 @@ std::vector<std::vector<std::int32_t>> fan(const std::vector<std::int32_t>& face
   const std::size_t first = index(std::ranges::min_element(facet) - facet.begin());
   const auto at = [&](std::size_t k) { return facet[(first + k) % facet.size()]; };
   return {{at(0), at(1), at(2)}, {at(0), at(2), at(3)}};
-}
-
-/// [m] (nodes, dim)
-Rows nodes_at(const Mesh& mesh, CellPlace place) {
-  const std::span<const std::int32_t> nodes = nodes_of(mesh.blocks[place.block], place.cell);
-  Rows x(static_cast<Eigen::Index>(nodes.size()), mesh.dim);
-  for (Eigen::Index a = 0; a < x.rows(); ++a)
-    for (Eigen::Index i = 0; i < x.cols(); ++i)
-      x(a, i) = mesh.points[index(nodes[a]) * index(mesh.dim) + index(i)];
-  return x;
 }
 
 }  // namespace
@@ -97,27 +85,8 @@ Simplex BoundarySimplices::simplex(int i) const {
   return simplex_of(simplex_view(mesh, nodes, offsets), i);
 }
 
-/// Newton's method from the middle: one step where the cell is a parallelepiped or a simplex.
 std::vector<double> reference_place(const Mesh& mesh, CellPlace place, const Eigen::Vector3d& at) {
-  const Element& element = *mesh.blocks[place.block].element;
-  const Eigen::Index dim = mesh.dim;
-  const Rows x = nodes_at(mesh, place);
-  const Eigen::Map<const Rows> corners(element.corners.data(), element.nodes, dim);
-  std::vector<double> xi(index(dim)), n(index(element.nodes)), dn(n.size() * xi.size());
-  Eigen::Map<Eigen::VectorXd> place_in(xi.data(), dim);
-  place_in = corners.colwise().mean().transpose();
-  constexpr int most = 30;
-  for (int i = 0; i < most; ++i) {
-    element.evaluate(xi, n, dn);
-    const Eigen::Map<const Eigen::VectorXd> values(n.data(), element.nodes);
-    const Eigen::Map<const Rows> slopes(dn.data(), element.nodes, dim);
-    const Eigen::VectorXd left = at.head(dim) - x.transpose() * values;
-    const Eigen::MatrixXd jacobian = x.transpose() * slopes;
-    const Eigen::VectorXd step = solve_square(jacobian, left);
-    place_in += step;
-    if (step.lpNorm<Eigen::Infinity>() < 1.0e-14) break;
-  }
-  return xi;
+  return reference_coordinates(mesh, place.block, place.cell, {at.data(), index(mesh.dim)});
 }
 
 std::vector<double> shape_values(const Mesh& mesh, CellPlace place, const std::vector<double>& xi) {
