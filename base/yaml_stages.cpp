@@ -15,8 +15,8 @@ namespace abut {
 namespace {
 
 /// Beside those of bodies, as body_choices() has them.
-constexpr std::array<std::string_view, 2> stage_choices = {"schwarz.accelerator",
-                                                           "output.checkpoint"};
+constexpr std::array<std::string_view, 3> stage_choices = {
+    "schwarz.accelerator", "output.checkpoint", "time.until"};
 
 bool fits(const std::vector<std::string>& path, std::string_view pattern) {
   return std::ranges::equal(path, split_path(pattern), [](const auto& step, const auto& part) {
@@ -38,6 +38,24 @@ bool is_explicit(const YAML::Node& body) {
   return integrator && child(integrator->node, "central_difference");
 }
 
+/// A body of another rung that has no equations to solve, and no surface without mass.
+bool is_reduced(const YAML::Node& body) {
+  const std::optional<Found> model = child(body, "model");
+  return model && (child(model->node, "rigid") || child(model->node, "modal"));
+}
+
+/// A body that goes on as another one moves and is displaced as that one: its place alone stays.
+YAML::Node placed(const YAML::Node& initial) {
+  if (!initial.IsMap()) return initial;
+  YAML::Node out(YAML::NodeType::Map);
+  for (const auto& pair : initial) {
+    const std::string& key = pair.first.Scalar();
+    if (key == "velocity" || key.ends_with("_field")) continue;
+    out.force_insert(pair.first, pair.second);
+  }
+  return out;
+}
+
 YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<std::string>& path) {
   if (!before.IsMap() || !own.IsMap()) return own;
   const bool other = own.size() == 1 && !child(before, own.begin()->first.Scalar());
@@ -49,8 +67,14 @@ YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<s
     const std::optional<Found> mine = child(own, key);
     if (mine && mine->node.IsNull()) continue;
     if (!mine && path.size() == 2 && key == "equations" && is_explicit(own)) continue;
+    if (!mine && path.size() == 2 && (key == "equations" || key == "contact_layer") &&
+        is_reduced(own))
+      continue;
+    const bool taken_over =
+        path.size() == 2 && path[0] == "bodies" && key == "initial" && child(own, "model");
+    const YAML::Node theirs = taken_over ? placed(pair.second) : pair.second;
     path.push_back(key);
-    out.force_insert(pair.first, mine ? merged(pair.second, mine->node, path) : pair.second);
+    out.force_insert(pair.first, mine ? merged(theirs, mine->node, path) : theirs);
     path.pop_back();
   }
   for (const auto& pair : own)
@@ -79,6 +103,9 @@ std::optional<NextStage> next_stage(const YAML::Node& scene) {
   if (const std::optional<Found> time = child(scene, "time"))
     if (const std::optional<Found> end = child(time->node, "end"); end && out["time"].IsMap())
       out["time"]["begin"] = YAML::Clone(end->node);
+  // An event ends the stage that waits for it, and no other one.
+  const std::optional<Found> own = child(first, "time");
+  if (out["time"].IsMap() && !(own && child(own->node, "until"))) out["time"].remove("until");
   if (rest.size() > 0) out["stages"] = YAML::Clone(rest);
   return NextStage{name, YAML::Dump(out)};
 }

@@ -15,7 +15,8 @@ struct NextStage {
 
 /// The scene that follows a scene with `stages`: its keys, those of the first stage over them (maps
 /// key by key, anything else as a whole, a choice of another name instead), begin where this one
-/// ends, and the stages after that one. Nothing: no stage follows.
+/// ends, without the event that ends this one (time.until), and the stages after that one. Nothing:
+/// no stage follows.
 std::optional<NextStage> next_stage(const YAML::Node& scene);
 
 }  // namespace abut

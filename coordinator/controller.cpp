@@ -61,6 +61,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
   end_.status = "completed";
   settles_ = std::ranges::any_of(descriptions_of(bodies_),
                                  [](const Description* body) { return is_stabilised(*body); });
+  if (scene.time.until) event_.emplace(scene);
   flight_.longest = flight_.limit =
       windows_at_once(scene.time.window, scene.output.records_per_window, descriptions_of(bodies_));
 }
@@ -76,13 +77,20 @@ RunEnd Controller::run() {
   try {
     if (!resumed_) start();
     while (running()) {
+      if (event_ && !passive_.active() && event_->is_over(joints_)) {
+        stop();
+        break;
+      }
       pause();
       join_near();
+      if (event_) event_->remember(bodies_);
       if (passive_.active())
         step_passively();
       else if (!fly_free())
         step_window();
     }
+    if (event_ && !event_->stopped() && end_.status == "completed" && clock_.at_end())
+      narrator_.not_come(event_->words(), clock_.time());
     if (end_.status == "completed") pause();
     if (goes_on()) end_.status = "interrupted";
     return finish(wall());  // asks the bodies for their states: they may be lost there as well
@@ -146,6 +154,7 @@ void Controller::start() {
     narrator_.found(*joint, clock_.time());
   for (const Joint& joint : joints_) narrator_.pressed_in(joint, clock_.time());
   watch_energy(guard_.look(bodies_.responses(), bodies_.struck()));
+  tell_swaps();
   if (!staged_) {  // else this instant was told as an end
     fill_reports(true);
     narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
@@ -238,10 +247,12 @@ TimeWindow Controller::next_window() {
 
 void Controller::step_window() {
   TimeWindow window = next_window();
+  if (ends_before(window)) return;
   if (must_go_passively(window)) return step_passively();
   SpanScope span(bodies_.spans(), "window", clock_.windows());
   span.covers(window.begin, window.end);
   events_.begin(window);
+  if (ends_before(window)) return;
   bodies_.save_all();
   while (goes_on()) {
     try_window(window);
@@ -259,6 +270,7 @@ void Controller::step_window() {
     if (judgement.verdict == Judgement::Verdict::cut) window.end = judgement.end;
     window = events_.even(window);
     bodies_.restore_all();
+    if (ends_before(window)) return;
     if (must_go_passively(window)) return step_passively();  // they came faster than was foreseen
   }
 }
@@ -359,6 +371,7 @@ void Controller::end_window(const TimeWindow& window, EnergyGuard::Verdict energ
   narrator_.window({window, bodies_.responses(), reports_, clock_.windows(), pairs_});
   watch_passing(before);
   if (std::ranges::any_of(reports_, &InterfaceReport::closed)) ++end_.contact_windows;
+  if (event_) event_->see(reports_);
   watch_energy(energy);
 }
 
@@ -468,27 +481,6 @@ void Controller::watch_passing(std::int64_t windows_before) {
   if (!scene_.output.field_output) return;
   const int every = scene_.output.field_output->every;
   if (clock_.windows() / every > windows_before / every) look_for_overlaps();
-}
-
-void Controller::look_for_overlaps() {
-  for (const Overlap& overlap : overlaps_.look(bodies_, joints_, clock_.time())) {
-    narrator_.overlap(overlap, joints_);
-    const auto before = std::ranges::find_if(end_.overlaps, [&overlap](const Overlap& told) {
-      return std::ranges::equal(told.body, overlap.body);
-    });
-    if (before == end_.overlaps.end())
-      end_.overlaps.push_back(overlap);
-    else
-      *before = overlap;
-  }
-}
-
-void Controller::look_for_passed() {
-  for (const Joint& joint : joints_) {
-    if (joint.contact.force_scale > 0.0 || !joint.watch->passed(joint, bodies_)) continue;
-    end_.never_met.push_back(joint.name);
-    narrator_.never_met(joint.name, clock_.time());
-  }
 }
 
 void Controller::fail(double time, const std::string& text) {

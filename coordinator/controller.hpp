@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "contract/hand_over.hpp"
 #include "coordinator/contact_events.hpp"
 #include "coordinator/couple.hpp"
 #include "coordinator/energy_guard.hpp"
@@ -21,6 +22,7 @@
 #include "coordinator/passive/passive_way.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/scene.hpp"
+#include "coordinator/stage_event.hpp"
 #include "coordinator/window_clock.hpp"
 
 namespace abut {
@@ -64,7 +66,9 @@ class Controller {
   void load(std::span<const std::byte> bytes);
   /// The same of the run whose end is the begin of this stage: it begins as a scene does, where
   /// bodies stand, and with those that have met.
-  void load_end(std::span<const std::byte> bytes);
+  /// `handed`: by body, of those that are another one now; throws RunError where these touch.
+  void load_end(std::span<const std::byte> bytes, std::vector<std::optional<HandOver>> handed = {});
+  const BodyRecord& record(int body) const { return bodies_.response(body).records.back(); }
   /// Who is told what the run's time goes into: "window", "flight", "island" and so on.
   void tell_spans(SpanSink sink) { bodies_.tell_spans(std::move(sink)); }
   const SpanSink& spans() const { return bodies_.spans(); }
@@ -98,9 +102,7 @@ class Controller {
     int limit = 1;          // at present
     bool grounded = false;  // came too near: step once
   };
-
-  /// How long bodies stay passive before the accurate method is tried again [windows]: doubly each
-  /// time that it failed soon.
+  // How long bodies stay passive [windows] before the accurate method is tried again.
   struct Waiting {
     int wait = 2, left = 0, accurate = 0;
   };
@@ -154,6 +156,11 @@ class Controller {
   bool leave_apart();
   bool rejoin();
   void fail(double time, const std::string& text);
+  bool is_swapped(const Joint& joint) const;
+  void release_swapped(const std::vector<Role>& roles);
+  void tell_swaps();
+  bool ends_before(const TimeWindow& window);
+  void stop();
   void state(Archive& archive);
   void memory(Archive& archive);
   void counts(Archive& archive);
@@ -186,6 +193,8 @@ class Controller {
   std::vector<PairReport> pairs_;
   RunEnd end_;
   bool resumed_ = false, staged_ = false;
+  std::vector<std::optional<HandOver>> handed_;  // by body; empty: none is another one now
+  std::optional<StageEvent> event_;  // none: time.end alone ends the stage
   bool settles_ = false;  // springs stabilise a body
 };
 

@@ -1,10 +1,13 @@
 // How and why a run ends, and what its end says of its bodies.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/index.hpp"
 #include "base/without_remedy.hpp"
 #include "coordinator/controller.hpp"
+#include "coordinator/coupling/watch.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
@@ -62,6 +65,27 @@ void Controller::tell_losses(const GivenUp& given_up) {
                                 "beside friction: it is short against the steps, of which those of "
                                 "'{}' are the longest; smaller ones take less",
                                 lost, 100.0 * lost / guard_.most(), name));
+}
+
+void Controller::look_for_overlaps() {
+  for (const Overlap& overlap : overlaps_.look(bodies_, joints_, clock_.time())) {
+    narrator_.overlap(overlap, joints_);
+    const auto before = std::ranges::find_if(end_.overlaps, [&overlap](const Overlap& told) {
+      return std::ranges::equal(told.body, overlap.body);
+    });
+    if (before == end_.overlaps.end())
+      end_.overlaps.push_back(overlap);
+    else
+      *before = overlap;
+  }
+}
+
+void Controller::look_for_passed() {
+  for (const Joint& joint : joints_) {
+    if (joint.contact.force_scale > 0.0 || !joint.watch->passed(joint, bodies_)) continue;
+    end_.never_met.push_back(joint.name);
+    narrator_.never_met(joint.name, clock_.time());
+  }
 }
 
 RunEnd Controller::finish(double wall_seconds) {

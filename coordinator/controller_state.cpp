@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/state_fields.hpp"
 
@@ -32,18 +33,27 @@ void Controller::load(std::span<const std::byte> bytes) {
   tell_start();
 }
 
-void Controller::load_end(std::span<const std::byte> bytes) {
+void Controller::load_end(std::span<const std::byte> bytes,
+                          std::vector<std::optional<HandOver>> handed) {
   staged_ = true;
+  handed_ = std::move(handed);
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
   std::vector<Role> roles;  // chosen for the schemes of this stage
   for (const Joint& joint : joints_) roles.push_back(joint.role);
   state(archive);  // what presses goes on pressing, and files are numbered by all windows
+  release_swapped(roles);
   if (!roles_.keep(joints_))
     for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].role = roles[j];
   EnergyGuard(guard_).state(archive);  // this stage has an account of its own
   bodies_.ends(archive);
+  for (const Joint& joint : joints_) {  // of surfaces that are no more
+    if (!is_swapped(joint)) continue;
+    for (const Side& side : joint.sides)
+      for (Reaction& reaction : bodies_.response(side.body).ports[index(side.port)].reactions)
+        reaction = {};
+  }
   clock_.anchor();
   tell_start();
 }
@@ -78,6 +88,7 @@ void Controller::memory(Archive& archive) {
   whole(archive, "left", waiting_.left);
   whole(archive, "accurate", waiting_.accurate);
   schwarz_.state(archive);
+  if (event_) event_->state(archive);
 }
 
 /// What a run counts and tells at its end, of all its windows; and how long these were, which a

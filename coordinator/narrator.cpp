@@ -230,6 +230,38 @@ void Narrator::given_up(const RunEnd& end) {
   tell({RunEvent::Kind::warning, end.time, "", text, {{"given_up", end.given_up.joules()}}});
 }
 
+void Narrator::swap(const Swap& swap) {
+  const Energy &before = swap.before.energy, &after = swap.after.energy;
+  std::map<std::string, double> values = {{"mass_before", swap.mass[0]},
+                                          {"mass_after", swap.mass[1]},
+                                          {"kinetic_before", before.kinetic},
+                                          {"kinetic_after", after.kinetic},
+                                          {"stored_before", before.stored},
+                                          {"stored_after", after.stored},
+                                          {"given_up", swap.given_up()}};
+  const auto add = [&values](const char* name, const std::vector<double>& one,
+                             const std::vector<double>& other) {
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      values[fmt::format("{}_{}_before", name, i)] = one[i];
+      if (i < other.size()) values[fmt::format("{}_{}_after", name, i)] = other[i];
+    }
+  };
+  add("momentum", swap.before.momentum, swap.after.momentum);
+  add("angular_momentum", swap.before.angular_momentum, swap.after.angular_momentum);
+  const double given_up = swap.given_up();
+  tell({RunEvent::Kind::swap, swap.time, swap.body,
+        fmt::format("body '{}' goes on as {}, was {}; kinetic energy {:.6g} J to {:.6g} J, stored "
+                    "{:.6g} J to {:.6g} J: {:.3g} J {}",
+                    swap.body, swap.to, swap.from, before.kinetic, after.kinetic, before.stored,
+                    after.stored, std::abs(given_up), given_up >= 0.0 ? "given up" : "added"),
+        std::move(values)});
+  for (Observer* observer : observers_) observer->on_swap(swap);
+}
+
+void Narrator::not_come(const std::string& event, double time) {
+  tell({RunEvent::Kind::warning, time, "", event + " has not come: time.end ends the stage", {}});
+}
+
 void Narrator::energy(const EnergyGuard& guard, std::span<const Joint> joints, double time) {
   tell({RunEvent::Kind::warning, time, "", words_of(guard, joints), {{"growth", guard.growth()}}});
 }

@@ -48,6 +48,10 @@ class Narrator {
   void passive(double time, const std::string& reason, bool statics);
   void accurate(double time, bool statics);
   void given_up(const RunEnd& end);
+  /// A body that goes on as another model or on another mesh.
+  void swap(const Swap& swap);
+  /// A stage ends by its time, and not by the event that it waits for.
+  void not_come(const std::string& event, double time);
   void energy(const EnergyGuard& guard, std::span<const Joint> joints, double time);
   void warning(double time, const std::string& subject, const std::string& text);
   void failure(double time, const std::string& text);

@@ -27,11 +27,25 @@ constexpr Rule patience_rule{.low = 0.0, .high = 604'800.0, .above_low = true};
 
 }  // namespace
 
+void UntilContact::fields(Fields& f) {
+  f.required("interface", interface, "",
+             "name of a contact of interfaces, or everything: the stage ends before the window in "
+             "which its sides may first touch");
+}
+
+void UntilApart::fields(Fields& f) {
+  f.required("interface", interface, "",
+             "name of a contact of interfaces, or everything: the stage ends with the window after "
+             "which its sides, which have pressed in this stage, are too far apart to touch in the "
+             "next one");
+}
+
 void TimeSpec::fields(Fields& f) {
   f.optional("begin", begin, "s", "time at which the run begins");
   f.required("end", end, "s", "time at which the run ends");
   f.required("window", window, "s", "length of the controller step, over which bodies are coupled",
              positive);
+  f.choice("until", until, "event that ends the run or stage before its end");
   f.check(end > begin, "end",
           fmt::format("must be after begin, {:.6g} s, but is {:.6g} s", begin, end),
           "Give an end after the begin.");
@@ -205,8 +219,8 @@ void Scene::fields(Fields& f) {
     f.map("stages", stages,
           "stages that follow the scene as it is written, such as an impact after a preload: each "
           "begins with the state in which the one before it ends, and has keys of its own in place "
-          "of the scene's: time.end, time.window, schwarz, output, and of bodies integrator, "
-          "equations, contact_layer, and initial.velocity after a static state",
+          "of the scene's: time.end, time.window, time.until, schwarz, output, and of bodies "
+          "model, integrator, equations, contact_layer, and initial.velocity after a static state",
           Presence::optional);
   idle_keys(f);
 }
@@ -402,6 +416,7 @@ Scene read_scene(const Document& document, InputErrors& errors) {
 void validate(const Scene& scene, const Document& document) {
   InputErrors errors;
   errors.gather([&] { check_times(scene.time, document); });
+  errors.gather([&] { check_until(scene, document); });
   if (scene.bodies.empty())
     errors.add({"has no body", document.where("bodies"), "Give at least one body."});
   for (const auto& entry : scene.bodies)

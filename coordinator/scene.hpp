@@ -21,13 +21,9 @@
 #include "coordinator/scene_meta.hpp"
 #include "coordinator/ssh_launch.hpp"
 #include "coordinator/tie_kernel_spec.hpp"
+#include "coordinator/time_spec.hpp"
 
 namespace abut {
-
-struct TimeSpec {
-  double begin = 0.0, end = 0.0, window = 0.0;  // [s]
-  void fields(Fields& f);
-};
 
 struct SpawnLaunch {  // the coordinator starts the process
   static constexpr std::string_view name = "spawn";

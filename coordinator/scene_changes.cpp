@@ -33,8 +33,8 @@ const std::regex& free_by_command() {
 
 const std::regex& free_in_stages() {
   static const std::regex keys(
-      R"(time\.(end|window)|bodies\.[^.]+\.initial\.velocity|)"
-      R"(bodies\.[^.]+\.(integrator|equations|contact_layer)(\..*)?|)"
+      R"(time\.(end|window)|time\.until(\..*)?|bodies\.[^.]+\.initial\.velocity|)"
+      R"(bodies\.[^.]+\.(model|integrator|equations|contact_layer)(\..*)?|)"
       R"(schwarz(\..*)?|output\.(records_per_window|fields|checkpoint)(\..*)?)");
   return keys;
 }
@@ -58,11 +58,28 @@ void check_stage(const Document& document, const std::string& path, const std::s
     } else {
       errors.add(
           {"cannot be another in a stage", document.where(below),
-           "Give time.end, time.window, schwarz, output, or of bodies integrator, equations, "
-           "contact_layer and initial.velocity; all else is the scene's, and may be "
-           "functions of time."});
+           "Give time.end, time.window, time.until, schwarz, output, or of bodies model, "
+           "integrator, equations, contact_layer and initial.velocity; all else is the scene's, "
+           "and may be functions of time."});
     }
   }
+}
+
+/// Of a body that has another model in the stage.
+void check_swap(const Document& document, const std::string& path, const std::string& body,
+                InputErrors& errors) {
+  const std::string own = join_path("bodies", body), model = join_path(own, "model");
+  const std::string below = join_path(path, model);
+  if (!document.has(below)) return;
+  for (const std::string& at : {model, below})
+    for (const std::string& name : document.keys(at))
+      if (name != "fe" && name != "modal" && name != "rigid")
+        errors.add({fmt::format("is {}, and of another model no other one takes over", name),
+                    document.where(at), "Give a body fe, modal or rigid in all stages."});
+  if (document.chooses(join_path(own, "integrator"), "quasi_static"))
+    errors.add({"is another after statics, in which the body would not be in balance",
+                document.where(below),
+                "Let the body move in one stage, and change its model in the next."});
 }
 
 bool named(const std::string& key, std::span<const std::string> overrides) {
@@ -101,6 +118,9 @@ void check_stages(const Document& document) {
       errors.add({"does not say when it ends", document.where(path),
                   "Give time: {end: ...}, after the end of the stage before."});
     check_stage(document, path, "", errors);
+    if (name == document.keys("stages").front())  // later ones are looked at in their turn
+      for (const std::string& body : document.keys(join_path(path, "bodies")))
+        check_swap(document, path, body, errors);
   }
   errors.raise();
 }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/count.hpp"
@@ -180,6 +182,27 @@ void check_times(const TimeSpec& time, const Document& document) {
                    document.where("time.window"),
                    fmt::format("Give a window of at least {:.3g} s, or times nearer to zero.",
                                shortest_time(time)));
+}
+
+void check_until(const Scene& scene, const Document& document) {
+  if (!scene.time.until) return;
+  const auto& [key, name] = std::visit(
+      [](const auto& event) {
+        return std::pair(fmt::format("time.until.{}", event.name), event.interface);
+      },
+      *scene.time.until);
+  if (name == everything_name && scene.everything() != nullptr) return;
+  std::vector<std::string> names;
+  for (const auto& [known, interface] : scene.interfaces) {
+    if (interface.tied) continue;
+    if (known == name) return;
+    names.push_back(known);
+  }
+  if (scene.everything() != nullptr) names.emplace_back(everything_name);
+  throw InputError(fmt::format("is {}, but the scene has no contact of that name", name),
+                   document.where(key),
+                   names.empty() ? "Leave until out: nothing of the scene comes into contact."
+                                 : fmt::format("Choose one of: {}.", fmt::join(names, ", ")));
 }
 
 void check_steps(const Scene& scene, std::span<const Description* const> bodies,

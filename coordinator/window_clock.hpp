@@ -28,6 +28,8 @@ class WindowClock {
   bool is_whole(const TimeWindow& window) const;
 
   void accept(const TimeWindow& window);
+  /// The run ends here, before its end.
+  void stop() { end_ = time_; }
   /// Whole windows of another length than before begin here.
   void anchor() { anchor_ = time_, since_ = 0; }
   void accept_flight(const TimeWindow& flight, int windows);

@@ -17,7 +17,8 @@ struct Checkpoint {
   struct Part {
     std::string name;
     std::string state;             // bytes
-    std::int64_t fingerprint = 0;  // of a body: what must be the same when it resumes
+    // Of a body: what must be the same when it resumes; 0: it is handed over to another one.
+    std::int64_t fingerprint = 0;
   };
   std::string version;       // of the program that wrote it
   std::string scene;         // resolved: every value in use

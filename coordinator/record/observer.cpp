@@ -8,6 +8,8 @@ const char* to_string(RunEvent::Kind kind) {
       return "contact_closed";
     case RunEvent::Kind::contact_opened:
       return "contact_opened";
+    case RunEvent::Kind::swap:
+      return "swap";
     case RunEvent::Kind::failure:
       return "failure";
     case RunEvent::Kind::warning:

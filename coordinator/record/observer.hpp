@@ -64,7 +64,7 @@ struct WindowReport {
 
 /// Something that happened at a time.
 struct RunEvent {
-  enum class Kind { contact_closed, contact_opened, failure, warning };
+  enum class Kind { contact_closed, contact_opened, swap, failure, warning };
   Kind kind = Kind::warning;
   double time = 0.0;                     // [s]; for contact: located inside a window
   std::string subject;                   // interface or body name
@@ -74,6 +74,17 @@ struct RunEvent {
 };
 
 const char* to_string(RunEvent::Kind kind);
+
+/// A body that goes on as another model or on another mesh.
+struct Swap {
+  double time = 0.0;  // [s]
+  std::string body, from, to;
+  std::array<double, 2> mass{};  // [kg] before and after, by the meshes
+  BodyRecord before, after;      // energies and momenta
+  /// [J] of energy that it has no more; negative: work that was added.
+  double given_up() const { return before.energy.total() - after.energy.total(); }
+  void state(Archive& archive);
+};
 
 /// Two bodies that are in the same place, of which no body can be.
 struct Overlap {
@@ -137,6 +148,8 @@ class Observer {
   virtual void on_window(const WindowReport&) {}
   /// Events of a window come before it or after it, and before the next one.
   virtual void on_event(const RunEvent&) {}
+  /// Before the first window after it.
+  virtual void on_swap(const Swap&) {}
   virtual void on_end(const RunEnd&) {}
 };
 

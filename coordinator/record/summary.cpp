@@ -8,11 +8,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/archive_lists.hpp"
 #include "base/error.hpp"
 #include "base/unit_words.hpp"
 #include "coordinator/record/expectations.hpp"
 #include "coordinator/record/given_up_words.hpp"
 #include "coordinator/record/run_facts.hpp"
+#include "coordinator/record/swaps_json.hpp"
 #include "coordinator/record/text_file.hpp"
 #include "coordinator/record/validity_notes.hpp"
 
@@ -201,6 +203,10 @@ Summary::Summary(std::filesystem::path directory, Heading heading, const Measure
       recorder_(recorder),
       form_(form) {}
 
+void Summary::state(Archive& archive) {
+  list(archive, "swaps", swaps_, [](Archive& a, Swap& swap) { swap.state(a); });
+}
+
 void Summary::on_start(const RunStart& start) {
   start_ = start;
   if (!heading_.program_began) return;
@@ -230,6 +236,7 @@ std::string Summary::text(const RunEnd& end) const {
   summary["windows"] = end.windows;
   summary["contact_windows"] = end.contact_windows;
   summary["exchanges"] = end.exchanges;
+  if (!swaps_.empty()) summary["swaps"] = swaps_json(swaps_);
   summary["overlaps"] = overlaps_array(end, start_);
   summary["never_closed"] = end.never_met;
   summary["accuracy"] = {{"given_up", given_up_object(end, start_, heading_.units)}};

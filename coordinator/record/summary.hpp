@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -35,7 +36,10 @@ class Summary : public Observer {
   Summary(std::filesystem::path directory, Heading heading, const MeasureRecorder& recorder,
           const ClosedForm* form);
 
+  std::string_view kept_as() const override { return "swaps"; }
+  void state(Archive& archive) override;
   void on_start(const RunStart& start) override;
+  void on_swap(const Swap& swap) override { swaps_.push_back(swap); }
   void on_end(const RunEnd& end) override;
 
   /// The status that was written: RunEnd's, or "failed".
@@ -49,6 +53,7 @@ class Summary : public Observer {
   const MeasureRecorder& recorder_;
   const ClosedForm* form_;
   RunStart start_;
+  std::vector<Swap> swaps_;
   double startup_seconds_ = 0.0;  // from the program's begin to the first window
   std::string status_;
 };

@@ -1,6 +1,8 @@
 #include "coordinator/verbs/checkpoints.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -9,6 +11,7 @@
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "coordinator/hand_over.hpp"
 
 namespace abut {
 namespace {
@@ -41,12 +44,26 @@ void check_bodies(const Checkpoint& from, const std::vector<Subdomain*>& bodies)
     if (!alike || from.bodies[b].name != body.name)
       throw InputError("has other bodies than the checkpoint, or in another order", "the scene",
                        "Resume with the scene of the run.");
+    if (from.bodies[b].fingerprint == 0) continue;  // handed over to another one
     if (from.bodies[b].fingerprint != fingerprint(body))
       throw InputError(
           "is another than the checkpoint's: its mesh or names have changed since",
           fmt::format("body '{}'", body.name),
           "Resume with the files and programs that the run began with, or run again.");
   }
+}
+
+/// By body; empty: none is handed over.
+std::vector<std::optional<HandOver>> handed_of(const Checkpoint& from) {
+  std::vector<std::optional<HandOver>> handed(from.bodies.size());
+  bool any = false;
+  for (std::size_t b = 0; b < handed.size(); ++b) {
+    if (from.bodies[b].fingerprint != 0) continue;
+    handed[b] = HandOver::from(bytes_of(from.bodies[b].state));
+    any = true;
+  }
+  if (!any) handed.clear();
+  return handed;
 }
 
 }  // namespace
@@ -93,9 +110,15 @@ void Checkpoints::write(const Pause& pause, Controller& controller) {
     throw RunError("ends while bodies go passively, where no other scheme can go on", "the stage",
                    "Let it end at another time");
   kept.run = text_of(controller.save());
-  for (Subdomain* body : bodies_)
-    kept.bodies.push_back(
-        {body->describe().name, text_of(body->checkpoint()), fingerprint(body->describe())});
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Description& body = bodies_[b]->describe();
+    if (kept.stage_ends && std::ranges::find(keeping_.swapped, body.name) != keeping_.swapped.end())
+      kept.bodies.push_back(
+          {body.name,
+           text_of(hand_over(*bodies_[b], controller.record(static_cast<int>(b))).bytes()), 0});
+    else
+      kept.bodies.push_back({body.name, text_of(bodies_[b]->checkpoint()), fingerprint(body)});
+  }
   for (Observer* observer : observers_) {
     if (observer->kept_as().empty()) continue;
     std::vector<std::byte> bytes;
@@ -113,7 +136,7 @@ void Checkpoints::write(const Pause& pause, Controller& controller) {
 void Checkpoints::resume(const Checkpoint& from, Controller& controller) {
   check_bodies(from, bodies_);
   if (from.stage_ends)
-    controller.load_end(bytes_of(from.run));
+    controller.load_end(bytes_of(from.run), handed_of(from));
   else
     controller.load(bytes_of(from.run));
   for (std::size_t b = 0; b < bodies_.size(); ++b)

@@ -22,6 +22,7 @@ class Checkpoints {
     std::optional<CheckpointSpec> when;  // absent: where a run is interrupted alone
     bool more = false;                   // a stage follows: the end of this one is kept
     std::string scene;                   // resolved
+    std::vector<std::string> swapped;    // bodies of which the next stage has another model
   };
   /// Bodies, observers and the clock must outlive this.
   Checkpoints(Keeping keeping, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,

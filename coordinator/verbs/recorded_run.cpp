@@ -208,8 +208,9 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
   Controller controller(scene, pointers, observers, &interrupts.asked);
   trace(spans, plan, options, controller);
   Checkpoints checkpoints(
-      {directory, scene.output.checkpoint, more, resolved_text(scene, plan.document)}, pointers,
-      observers, clock);
+      {directory, scene.output.checkpoint, more, resolved_text(scene, plan.document),
+       swapped_bodies(plan.document)},
+      pointers, observers, clock);
   grant_patience(patience);
   const RunEnd end = conduct(controller, checkpoints, from, directory);
   // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
@@ -238,6 +239,21 @@ class Restarts {
 
 }  // namespace
 
+/// As they are written: what a stage does not name is that of the stage before.
+std::vector<std::string> swapped_bodies(const Document& document) {
+  const std::optional<Document> next = document.next_stage();
+  std::vector<std::string> names;
+  if (!next) return names;
+  for (const std::string& name : document.keys("bodies")) {
+    const std::string key = join_path(join_path("bodies", name), "model");
+    ResolvedYaml before(document.units()), now(next->units());
+    before.copy(key, document);
+    now.copy(key, *next);
+    if (before.text() != now.text()) names.push_back(name);
+  }
+  return names;
+}
+
 std::string resolved_text(const Scene& scene, const Document& document) {
   std::string text = "# Every value that this run used.\n";
   for (const auto& [what, version] : versions()) text += fmt::format("# {}: {}\n", what, version);
@@ -251,9 +267,11 @@ std::string resolved_text(const Scene& scene, const Document& document) {
   return text + resolved.text();
 }
 
-RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts) {
+RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts,
+                 std::optional<double> begin) {
   RunPlan plan{std::move(document), {}, {}, {}};
   plan.scene = read_all_keys(plan.document);
+  plan.scene.time.begin = begin.value_or(plan.scene.time.begin);
   if (options.awaited) {
     assign_roles(plan.scene, plan.document, true);
     check_awaited(*options.awaited, options.insecure);
@@ -296,7 +314,8 @@ int record_run(RunPlan plan, const RunOptions& options, RunDirectory& held,
     if (!lost) from = read_checkpoint(held.path(), warnings);
     if (!lost) log_info(fmt::format("next stage, from {:.6g} s", from->time));
     held.go_on();
-    plan = plan_run(lost ? std::move(plan.document) : std::move(*next), options, interrupts);
+    const double begin = from->stage_ends ? from->time : plan.scene.time.begin;
+    plan = plan_run(lost ? std::move(plan.document) : std::move(*next), options, interrupts, begin);
   }
 }
 

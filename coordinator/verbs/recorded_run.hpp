@@ -31,8 +31,14 @@ struct RunOptions {
   std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };
 
-/// Reads a scene, with all stages that follow, and places its bodies. Throws InputError, RunError.
-RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts);
+/// Reads a scene, with all stages that follow, and places its bodies. `begin`: [s] of a stage that
+/// follows one that an event may have ended; none: the scene's. Throws InputError, RunError.
+RunPlan plan_run(Document document, const RunOptions& options, const Interrupts& interrupts,
+                 std::optional<double> begin = std::nullopt);
+
+/// Bodies of which the stage that follows a scene has another model or mesh; none: no stage
+/// follows.
+std::vector<std::string> swapped_bodies(const Document& document);
 
 /// The resolved scene, with who has read it.
 std::string resolved_text(const Scene& scene, const Document& document);

@@ -76,7 +76,8 @@ int resume_verb(const ResumeCommand& command) {
   Checkpoint from = read_checkpoint(held.path(), warnings);
   for (const std::string& warning : warnings) log_warning(warning);
   Document document = scene_of(command, from);
-  RunPlan plan = plan_run(std::move(document), options, interrupts);
+  RunPlan plan = plan_run(std::move(document), options, interrupts,
+                          from.stage_ends ? std::optional(from.time) : std::nullopt);
   check_end(from, plan.scene, command.directory);
   go_back(from, plan.scene, command.directory);
   log_info(fmt::format("goes on from {:.6g} s, window {}", from.time, from.windows));

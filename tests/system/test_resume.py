@@ -253,6 +253,23 @@ class Damage(Resume):
         self.assert_same(self.whole, self.out)
 
 
+class Swaps(Resume):
+    SCENE = ROOT / "configs" / "contact" / "rigid_until_contact.yaml"
+
+    def test_a_run_is_resumed_before_and_after_every_swap(self):
+        every = ["--set", "output.checkpoint={windows: 3}"]
+        whole = self.run_whole(self.SCENE, *every)
+        for until in (5.0e-5, 1.5e-4, 2.8e-4, 7.0e-4):
+            run = self.begin(self.SCENE, *every)
+            if self.come_to(run, until):
+                self.kill(run)
+                run = self.resume()
+            self.succeed(self.end(run))
+            self.assert_same(whole, self.out)
+            self.assertEqual(self.summary(whole)["swaps"], self.summary(self.out)["swaps"])
+            shutil.rmtree(self.out)
+
+
 class Stages(Resume):
     SCENE = ROOT / "configs" / "contact" / "preload_then_impact.yaml"
 

@@ -87,5 +87,40 @@ TEST(Stages, AreNoneWhereASceneHasNone) {
   EXPECT_FALSE(Document::from_text("s.yaml", "time: {end: 1}").next_stage());
 }
 
+TEST(Stages, WaitForTheirOwnEventsAlone) {
+  const Document first = Document::from_text("s.yaml", R"(
+time: {end: 1, window: 0.1, until: {contact: blow}}
+stages:
+  hit: {time: {end: 2, until: {apart: blow}}}
+  rest: {time: {end: 3}}
+)");
+  const std::optional<Document> hit = first.next_stage();
+  ASSERT_TRUE(hit);
+  EXPECT_TRUE(hit->has("time.until.apart"));
+  EXPECT_FALSE(hit->has("time.until.contact"));
+  const std::optional<Document> rest = hit->next_stage();
+  ASSERT_TRUE(rest);
+  EXPECT_FALSE(rest->has("time.until"));
+}
+
+TEST(Stages, HaveAnotherModelInPlaceOfTheBodys) {
+  const Document first = Document::from_text("s.yaml", R"(
+time: {end: 1, window: 0.1}
+bodies:
+  a: {model: {rigid: {dimension: 2, mesh: {disk: {radius: 1}}}}}
+  b: {model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [1, 1], elements: [2, 2]}}}}}
+stages:
+  hit:
+    time: {end: 2}
+    bodies:
+      a: {model: {fe: {dimension: 2, mesh: {disk: {radius: 1}}}}}
+      b: {model: {fe: {mesh: {rectangle: {elements: [4, 4]}}}}}
+)");
+  const std::optional<Document> hit = first.next_stage();
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->keys("bodies.a.model"), std::vector<std::string>{"fe"});
+  EXPECT_TRUE(hit->has("bodies.b.model.fe.mesh.rectangle.lengths")) << "keys that stay";
+}
+
 }  // namespace
 }  // namespace abut::test_yaml_stages

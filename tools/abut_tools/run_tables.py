@@ -96,6 +96,28 @@ def bodies_table(run: Run) -> str:
                      "kinetic energy, end", "most energy stored"], rows)
 
 
+def swaps_table(run: Run) -> str:
+    """Bodies that went on as another model or on another mesh."""
+    rows = []
+    for swap in run.summary.get("swaps", []):
+        mass, kinetic, stored = swap["mass"], swap["kinetic"], swap["stored"]
+        most = kinetic["before"] + stored["before"]
+        size = math.sqrt(2.0 * mass["before"] * most) or 1.0
+        change = math.dist(swap["momentum"]["before"], swap["momentum"]["after"]) / size
+        energies = (kinetic["before"], kinetic["after"], stored["before"], stored["after"],
+                    swap["given_up"])
+        models = [", ".join(swap[at].split(", ")[:2]) for at in ("from", "to")]
+        rows.append([moment_words(run, swap["time"]), swap["body"], *models,
+                     "kept" if change < ROUND_OFF else f"changed by {100.0 * change:.2g} %"] +
+                    [run.told(clean(value, most), "J") for value in energies])
+    if not rows:
+        return ""
+    more = len(rows) - MOST_ROWS
+    note = f'<p class="note">and {more} more, in summary.json</p>' if more > 0 else ""
+    return table_of(["at", "body", "was", "is", "momentum", "kinetic energy before", "after",
+                     "stored before", "after", "given up"], rows[:MOST_ROWS]) + note
+
+
 def course(run: Run) -> str:
     """The run in one sentence."""
     summary, told = run.summary, []
@@ -118,7 +140,7 @@ def course(run: Run) -> str:
 
 
 def what_happened(run: Run) -> str:
-    return course(run) + joints_table(run) + bodies_table(run)
+    return course(run) + joints_table(run) + swaps_table(run) + bodies_table(run)
 
 
 # ---- warnings -----------------------------------------------------------
