@@ -160,6 +160,14 @@ class Swaps(SystemTest):
         for coarse, fine in zip(lost, lost[1:]):
             self.assertGreater(coarse / fine, 3.5)
 
+    def test_a_page_draws_bodies_that_change_their_mesh(self):
+        steps = [(model(2, "rigid", [4, 2], "quad4"), RIGID),
+                 (model(2, "fe", [7, 5], "tri3"), SCHEMES["newmark"])]
+        self.run_text(scene(2, "neo", steps, spin(2)) + "output: {fields: {every: 1}}\n")
+        self.succeed(self.abut("report", self.out))
+        page = (self.out / "report.html").read_text(encoding="utf-8")
+        self.assertIn("fe, 70 tri3", page)
+
     def test_a_stage_with_the_same_model_swaps_nothing(self):
         steps = [(model(2, "fe", [4, 2], "quad4"), SCHEMES["newmark"])] * 2
         self.assertEqual(self.run_text(scene(2, "neo", steps, waves(2))), [])

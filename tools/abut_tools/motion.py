@@ -58,6 +58,7 @@ class MovingBody:
         self.displacements = []  # per state an array of 3 numbers per node of the surface
         self.values = {}         # key -> per state an array of one number per node
         self.grid = grid
+        self.nearest = {}        # of another mesh: its nearest node for every node of the surface
 
     def averaging(self) -> dict[int, list[int]]:
         """The cells of every node of the surface: values of cells are shown as means of these."""
@@ -88,8 +89,8 @@ class MovingBody:
         return None
 
     def add(self, state: State, shades: tuple[Shade, ...]) -> None:
-        if state.nodes != len(self.grid.points) // 3:
-            raise damaged(state.path, "has another number of nodes than the body's first state")
+        if (state.nodes, state.cells) != (len(self.grid.points) // 3, len(self.grid.offsets)):
+            return self.add_by_nearest(state, shades)
         moved = array.array("d", bytes(24 * len(self.surface.nodes)))
         if state.has("PointData", "displacement"):
             numbers = state.at_nodes("displacement", 3)
@@ -98,6 +99,30 @@ class MovingBody:
         self.displacements.append(moved)
         for shade in shades:
             self.values.setdefault(shade.key, []).append(self.shade(state, shade))
+        return None
+
+    def add_by_nearest(self, state: State, shades: tuple[Shade, ...]) -> None:
+        """Of a body that has gone on as another mesh: what its nearest nodes tell, on the first."""
+        key = (state.nodes, state.cells)
+        if key not in self.nearest:
+            points = state.grid().points
+            there = [tuple(points[3 * k: 3 * k + 3]) for k in range(state.nodes)]
+            self.nearest[key] = [min(range(len(there)), key=lambda k, x=x: math.dist(x, there[k]))
+                                 for x in self.rest]
+        nodes = self.nearest[key]
+        moved = array.array("d", bytes(24 * len(nodes)))
+        if state.has("PointData", "displacement"):
+            numbers = state.at_nodes("displacement", 3)
+            moved = array.array("d", (numbers[3 * node + i] for node in nodes for i in range(3)))
+        self.displacements.append(moved)
+        for shade in shades:
+            told = None
+            for place, name, components in shade.arrays:
+                if told is None and place == "PointData" and state.has(place, name):
+                    numbers = state.at_nodes(name, components)
+                    told = array.array("d", (one_of(numbers, components * node, components,
+                                                    shade.component) for node in nodes))
+            self.values.setdefault(shade.key, []).append(told)
 
 
 def one_of(numbers: array.array, at: int, components: int, component: int) -> float:
