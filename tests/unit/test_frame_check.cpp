@@ -30,7 +30,7 @@ std::string refusal(const Description& body, std::size_t limit, const FieldSize&
   const Document document = Document::from_text(
       "test", "time: {begin: 0.0, end: 1.0e-4, window: 1.0e-5}\noutput: {fields: {every: 1}}\n");
   Scene scene;
-  scene.time = {0.0, 1.0e-4, 1.0e-5};
+  scene.time = {0.0, 1.0e-4, 1.0e-5, {}};
   scene.interfaces.emplace_back("hit", InterfaceSpec{});
   const Description* bodies[] = {nullptr, &body};  // of one of which nothing is known
   const FieldSize sizes[] = {{}, fields};
