@@ -297,6 +297,11 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   return meet_end();
 }
 
+bool SolidInterior::stabilised() const {
+  const QuasiStatic* statics = parts_.scheme.integrator->able().statics;
+  return statics != nullptr && statics->stabilisation() != nullptr;
+}
+
 /// Where the nodes are and how they move now.
 void SolidInterior::see_nodes() {
   u_.resize(nodal_values());

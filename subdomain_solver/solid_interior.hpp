@@ -138,10 +138,7 @@ class SolidInterior final : public Interior,
     double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
     double crossed = 0.0;            // most pairs of facets that crossed each other, at records
   };
-  bool stabilised() const {  // because contact alone holds it
-    const QuasiStatic* statics = parts_.scheme.integrator->able().statics;
-    return statics != nullptr && statics->stabilisation() != nullptr;
-  }
+  bool stabilised() const;  // because contact alone holds it
   void describe(std::string name, const std::vector<PortNodes>& ports);
   void find_traits();
   void find_abilities();
