@@ -128,7 +128,6 @@ class Controller {
   Judgement judge_trouble(const TimeWindow& window);
   void accept(const TimeWindow& window);
   void end_window(const TimeWindow& window, EnergyGuard::Verdict energy);
-
   int windows_to_fly();
   void prepare(const TimeWindow& window, int records, Sampling sampling);
   int records_in(const TimeWindow& window) const;
