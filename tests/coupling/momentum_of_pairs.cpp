@@ -66,6 +66,17 @@ ResultPtr run(int dim, bool tied, const Steps& steps, const std::string& one,
                   tied ? "tied" : "contact"));
 }
 
+/// The one is tied to the other, which the third one hits.
+auto hit(const std::string& one, const std::string& other, const std::string& third) {
+  std::string text = body("a", 2, 2, one, "position: [0.0, 0.0]", "face: {side: right}");
+  text += body("b", 2, 2, other, "position: [1.0, 0.0]", "face: {side: left}, end: {side: right}");
+  text += body("c", 2, 3, third, "position: [2.001, 0.0], velocity: [-0.01, 0.0]",
+               "face: {side: left}");
+  return run_scene(3.0, 0.05, text,
+                   "interfaces:\n" + joined("joint", "a.face", "b.face") +
+                       touching("hit", "b.end", "c.face") + "schwarz: {energy_guard: 10.0}\n");
+}
+
 struct Kind {
   int dim;
   bool tied;
@@ -104,15 +115,7 @@ TEST(MomentumOfPairs, IsExactWhereAJointAndAContactMeet) {
   for (const std::string& one : schemes(steps.one)) {
     for (const std::string& other : schemes(steps.other)) {
       SCOPED_TRACE(one + " and " + other);
-      std::string text = body("a", 2, 2, one, "position: [0.0, 0.0]", "face: {side: right}");
-      text +=
-          body("b", 2, 2, other, "position: [1.0, 0.0]", "face: {side: left}, end: {side: right}");
-      text += body("c", 2, 3, one, "position: [2.001, 0.0], velocity: [-0.01, 0.0]",
-                   "face: {side: left}");
-      const auto result =
-          run_scene(3.0, 0.05, text,
-                    "interfaces:\n" + joined("joint", "a.face", "b.face") +
-                        touching("hit", "b.end", "c.face") + "schwarz: {energy_guard: 10.0}\n");
+      const auto result = hit(one, other, one);
       ASSERT_TRUE(result->completed());
       EXPECT_LE(result->measure("momentum.total"), rounding);
     }
@@ -145,15 +148,7 @@ TEST(MomentumOfPairs, IsExactWhereOneOfTwoAlikeIsHit) {
   for (const std::string& alike : schemes(steps.one)) {
     for (const std::string& other : schemes(steps.other)) {
       SCOPED_TRACE(alike + " and " + other);
-      std::string text = body("a", 2, 2, alike, "position: [0.0, 0.0]", "face: {side: right}");
-      text +=
-          body("b", 2, 2, alike, "position: [1.0, 0.0]", "face: {side: left}, end: {side: right}");
-      text += body("c", 2, 3, other, "position: [2.001, 0.0], velocity: [-0.01, 0.0]",
-                   "face: {side: left}");
-      const auto result =
-          run_scene(3.0, 0.05, text,
-                    "interfaces:\n" + joined("joint", "a.face", "b.face") +
-                        touching("hit", "b.end", "c.face") + "schwarz: {energy_guard: 10.0}\n");
+      const auto result = hit(alike, alike, other);
       ASSERT_TRUE(result->completed());
       EXPECT_LE(result->measure("momentum.total"), rounding);
     }
