@@ -78,10 +78,10 @@ def main() -> int:
         check(options.directory)
         server = serving(options.directory, options.port,
                          page_of(options.directory, options.chart_library))
-        print(f"http://{HOST}:{server.server_address[1]}/ shows {options.directory} until Ctrl-C",
-              flush=True)
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
-        try:
+        try:  # whoever reads the line may end it at once
+            signal.signal(signal.SIGTERM, signal.default_int_handler)
+            print(f"http://{HOST}:{server.server_address[1]}/ shows {options.directory} until "
+                  "Ctrl-C", flush=True)
             server.serve_forever()
         except KeyboardInterrupt:
             print()
