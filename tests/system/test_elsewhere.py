@@ -103,8 +103,8 @@ def missing(said: object, resolved: object, path: str = "") -> list:
     if isinstance(said, list) and isinstance(resolved, list) and len(said) == len(resolved):
         return [place for k, pair in enumerate(zip(said, resolved))
                 for place in missing(*pair, f"{path}[{k}]")]
-    if isinstance(resolved, dict):  # a choice without keys, as one word
-        return [] if list(resolved) == [said] else [path]
+    if isinstance(resolved, dict):  # a choice without keys, as one word, or its one key's value
+        return [] if [said] in (list(resolved), list(resolved.values())) else [path]
     if path.endswith(".file"):
         return [] if Path(str(resolved)).name == Path(str(said)).name else [path]
     return [] if same(said, resolved) else [path]
