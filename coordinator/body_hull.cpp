@@ -32,9 +32,9 @@ const std::vector<Facet>& facets_of(std::int32_t type) {
               {2, 3, 7, 6, 10, 19, 14, 18}, {3, 0, 4, 7, 11, 16, 15, 19},
               {0, 3, 2, 1, 11, 10, 9, 8},   {4, 5, 6, 7, 12, 13, 14, 15}};
     for (const auto& [linear, second] : {std::pair{5, 22}, {9, 23}, {10, 24}, {12, 25}}) {
-      for (Facet facet : of[second]) {
-        facet.resize(facet.size() == 3 ? 2 : facet.size() / 2);
-        of[linear].push_back(facet);
+      for (const Facet& facet : of[second]) {
+        const std::ptrdiff_t corners = facet.size() == 3 ? 2 : std::ssize(facet) / 2;
+        of[linear].emplace_back(facet.begin(), facet.begin() + corners);
       }
     }
     return of;

@@ -94,8 +94,8 @@ Estimate::Kernel kernel_of(const InterfaceSpec& spec, const UnilateralTransmissi
   if (body == nullptr || finder == nullptr || body->dim == 1 || !body->can.kernel ||
       std::isinf(body->mass) || !finder->can.yielding)
     return kernel;
-  const auto points_of = [](const Description& of, const std::string& side) {
-    const std::string port(split_port(side).port);
+  const auto points_of = [](const Description& of, const std::string& text) {
+    const std::string port(split_port(text).port);
     for (const Port& p : of.ports)
       if (p.name == port) return static_cast<std::int64_t>(p.geometry.count());
     return std::int64_t{0};

@@ -126,8 +126,9 @@ void Narrator::lowered_step(const Joint& joint, double time, double limit) {
 void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints) {
   const auto [a, b] = overlap.body;
   const auto joint = std::ranges::find_if(joints, [&overlap](const Joint& j) {
-    const auto [a, b] = overlap.body;
-    return std::minmax(j.sides[0].body, j.sides[1].body) == std::pair<const int&, const int&>(a, b);
+    const auto [one, other] = overlap.body;
+    return std::minmax(j.sides[0].body, j.sides[1].body) ==
+           std::pair<const int&, const int&>(one, other);
   });
   std::string advice = "no interface joins them: give one, or contact: {everything: {}}";
   if (joint != joints.end()) {
@@ -232,13 +233,11 @@ void Narrator::given_up(const RunEnd& end) {
 
 void Narrator::swap(const Swap& swap) {
   const Energy &before = swap.before.energy, &after = swap.after.energy;
-  std::map<std::string, double> values = {{"mass_before", swap.mass[0]},
-                                          {"mass_after", swap.mass[1]},
-                                          {"kinetic_before", before.kinetic},
-                                          {"kinetic_after", after.kinetic},
-                                          {"stored_before", before.stored},
-                                          {"stored_after", after.stored},
-                                          {"given_up", swap.given_up()}};
+  std::map<std::string, double> values = {
+      {"mass_before", swap.mass[0]},      {"mass_after", swap.mass[1]},
+      {"kinetic_before", before.kinetic}, {"kinetic_after", after.kinetic},
+      {"stored_before", before.stored},   {"stored_after", after.stored},
+      {"given_up", swap.given_up()}};
   const auto add = [&values](const char* name, const std::vector<double>& one,
                              const std::vector<double>& other) {
     for (std::size_t i = 0; i < one.size(); ++i) {

@@ -58,7 +58,7 @@ class Divider {
         std::vector<CellBlock>& blocks = parts_[p].mesh.blocks;
         if (block_[p][b] < 0) {
           block_[p][b] = static_cast<std::int32_t>(blocks.size());
-          blocks.push_back({block.element, {}, block.name});
+          blocks.push_back({block.element, {}, block.name, {}});
         }
         CellBlock& to = blocks[block_[p][b]];
         cell_[cell] = to.count();
