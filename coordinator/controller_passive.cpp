@@ -261,6 +261,7 @@ GivenUp Controller::given_up() const {
           .refused = passive.refused,
           .rigid = passive.rigid,
           .shortest_step = passive.shortest_step,
+          .unsettled = passive.unsettled,
           .normal = passive.normal,
           .friction = passive.friction,
           .damped = passive.damped,

@@ -25,6 +25,7 @@ struct PassiveLedger {
   std::int64_t halved_windows = 0, rigid_windows = 0, unanswered = 0;
   double deepest = 0.0;        // [m] behind a partner's surface
   double shortest_step = 0.0;  // [s]; 0: none was taken
+  std::int64_t unsettled = 0;  // steps of statics after which bodies did not rest yet
 
   // By body, as long as one has any. [J] of its deforming side's normal contact; [J] that damping
   // and changes of form took from it; steps that it refused
@@ -69,6 +70,7 @@ struct PassiveLedger {
     archive.field("refused_by", refused_by);
     archive.field("deepest", deepest);
     archive.field("shortest_step", shortest_step);
+    archive.field("unsettled", unsettled);
   }
 };
 

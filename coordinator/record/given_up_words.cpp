@@ -34,6 +34,11 @@ std::string windows_words(const GivenUp& up, std::int64_t windows) {
   if (up.rigid_windows > 0)
     text += fmt::format(", and bodies were held rigid for an instant in {}",
                         share(up.rigid_windows, windows));
+  if (up.unsettled > 0)
+    text += fmt::format(
+        ", and after {} of their steps bodies did not rest yet: forces on the two sides of a body "
+        "may differ by some per cent",
+        up.unsettled);
   return text;
 }
 
