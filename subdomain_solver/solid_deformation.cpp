@@ -64,13 +64,13 @@ double SolidInterior::take_from_deformation(double joules) {
   if (parts_.rigid != nullptr || !(std::abs(joules) > 0.0)) return 0.0;
   if (joins_ && !is_passive()) return take_beside_joints(joules);
   Vector rest = view(motion.v);
-  Vector mass = Vector::Ones(rest.size());
+  double most = 0.0;  // [J]
   if (parts_.reduced) {
     for (Eigen::Index k = 0; k < rest.size(); ++k)
       if (parts_.frequencies[k] == 0.0) rest(k) = 0.0;
+    most = 0.5 * rest.squaredNorm();  // modes have a mass of one
   } else {
     const SparseMatrix& whole = mass_of_form();
-    mass = whole.diagonal();
     const Eigen::MatrixXd rigid = free_motions(true);
     if (rigid.cols() > 0) {
       const Eigen::MatrixXd heavy = whole * rigid;
@@ -80,12 +80,8 @@ double SolidInterior::take_from_deformation(double joules) {
     for (const Prescribed& p : parts_.problem->supports) rest(p.dof) = 0.0;
     for (const int dof : is_passive() ? std::vector<int>{} : parts_.model->massless())
       rest(dof) = 0.0;
-    const double most = energy_of(whole, rest);
-    if (!(most > 0.0)) return 0.0;
-    view(motion.v) -= part_of(joules, most) * rest;
-    return before - energy().kinetic;
+    most = energy_of(whole, rest);
   }
-  const double most = 0.5 * rest.squaredNorm();  // modes have a mass of one
   if (!(most > 0.0)) return 0.0;
   view(motion.v) -= part_of(joules, most) * rest;
   return before - energy().kinetic;

@@ -143,8 +143,7 @@ Vector SolidInterior::nodal_momentum() {
 }
 
 /// Momentum is made what it was, and angular momentum as far as the energy lasts: what deforms pays
-/// for it first.
-/// What another mass on the nodes has lost of the energy is given to what deforms.
+/// for it first, and gets what another mass on the nodes has lost.
 template <class Energy>
 void SolidInterior::keep_momenta(const Vector& momentum, double most, const Energy& energy) {
   if (!parts_.reduced) keep_momentum(free_motions(false), momentum);

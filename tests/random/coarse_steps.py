@@ -127,19 +127,26 @@ class Pressed:
         return bodies
 
 
-def trouble(abut: str, text: str, folder: Path, lid: str, statics: bool) -> str:
-    """What is wrong with a scene; empty: nothing."""
+def outcome(abut: str, text: str, folder: Path) -> tuple:
+    """Why a scene does not run to its end, empty: it does; its measures."""
     scene = folder / "scene.yaml"
     scene.write_text(text, encoding="utf-8")
     try:
         ran = subprocess.run([abut, "run", "--local", "--force", "--out", folder / "o", scene],
                              capture_output=True, text=True, timeout=SECONDS, check=False)
     except subprocess.TimeoutExpired:
-        return f"longer than {SECONDS} s"
+        return f"longer than {SECONDS} s", {}
     if ran.returncode != 0:
         errors = [line for line in ran.stderr.splitlines() if "error" in line]
-        return f"exit {ran.returncode}: {' '.join(errors)[:300]}"
-    measures = json.loads((folder / "o" / "summary.json").read_text("utf-8"))["measures"]
+        return f"exit {ran.returncode}: {' '.join(errors)[:300]}", {}
+    return "", json.loads((folder / "o" / "summary.json").read_text("utf-8"))["measures"]
+
+
+def trouble(abut: str, text: str, folder: Path, lid: str, statics: bool) -> str:
+    """What is wrong with a scene; empty: nothing."""
+    ended, measures = outcome(abut, text, folder)
+    if ended:
+        return ended
     if not statics:
         drift = measures["energy.total.relative_drift_end"]
         return f"energy grew by {drift:.2g}" if drift > 2.0 * GAINED else ""
