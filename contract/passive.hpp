@@ -17,6 +17,9 @@ struct PassiveStep {
   std::vector<std::vector<double>> impulses;   // [N s] (ports; points x dim); a port's empty: none
   // (ports) points whose compliance is wanted, ascending
   std::vector<std::vector<std::int32_t>> pressed;
+  // Of bodies without inertia: what holds them in the step is 4^-looser of what it is by itself.
+  std::int32_t looser = 0;
+  static constexpr std::int32_t loosest = 20;
 
   double length() const { return end - begin; }
 };

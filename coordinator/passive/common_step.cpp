@@ -153,9 +153,13 @@ double CommonStep::farthest() const {
   return most;
 }
 
-bool CommonStep::settle(double begin, double end, bool lenient, PassiveLedger& ledger) {
+bool CommonStep::settle(double begin, double end, int looser, bool lenient,
+                        PassiveLedger& ledger) {
   std::vector<DistanceRow> rows = rows_;
-  if (!take(begin, end, lenient, ledger)) return true;
+  looser_ = looser;
+  const bool taken = !take(begin, end, lenient, ledger);
+  looser_ = 0;
+  if (taken) return true;
   rows_ = std::move(rows);
   return false;
 }
@@ -247,6 +251,7 @@ std::optional<Failed> CommonStep::advance(bool all) {
     advanced_[index(b)] = 1;
     asked.begin = step_.begin;
     asked.end = step_.end;
+    asked.looser = looser_;
     asked.pressed = points_.list(b, bodies_.describe(b).ports.size());
     if (length() > 0.0) ties_.add_points(b, asked.pressed);
     bodies_[b].passive()->start(asked);

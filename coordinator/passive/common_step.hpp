@@ -42,7 +42,7 @@ class CommonStep {
   /// Of bodies without inertia, after a step that was taken: the same once more, from where they
   /// are and were saved, so that what held them as wholes in it lets go. False: restore them; the
   /// step is as it was.
-  bool settle(double begin, double end, bool lenient, PassiveLedger& ledger);
+  bool settle(double begin, double end, int looser, bool lenient, PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }
   /// The body that could not take it; -1: none alone.
@@ -117,6 +117,7 @@ class CommonStep {
   double allowed_ = 0.0;                              // [J] that contact may do in the step
   double released_ = 0.0;                             // [J] beside, by rows that part
   int softer_ = 0;                                    // solves of these rows so far
+  int looser_ = 0;                                    // than in a first step bodies are held
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
   std::map<std::int32_t, double> owed_;               // [J] to rows, by their first points
   std::map<std::int32_t, double> unclaimed_;          // of it, by no row of this step yet

@@ -24,13 +24,18 @@ constexpr int most_holds = 4;
 /// What bodies repay: those that have no more are left out of the next round.
 constexpr int rounds_to_repay = 3;
 constexpr double most_of_share = 0.99;
-/// After a step of bodies without inertia: at most so many more, until they move by less than this
-/// share of it.
+/// After a step of bodies without inertia: at most so many more, until what holds them is this
+/// share of what held them most in any step; and the same of a step after which they are told not
+/// to rest.
 constexpr int most_settling_steps = 60;
-constexpr double settled = 1.0e-5;
-/// The same of a step after which they are told not to rest: where each further one goes nearly as
-/// far, what is missing is tens of it, and forces are off by that.
-constexpr double nearly_settled = 1.0e-3;
+constexpr double settled = 1.0e-4, nearly_settled = 1.0e-3;
+/// They are held so loosely that they should go this far, in parts of the farthest step. What drifts
+/// along a way on which nothing else holds it would go farther in vain.
+constexpr double settling_way = 0.5;
+constexpr int loosest = 6;
+/// Settling ends after so many steps in a row that leave more than this share of what held.
+constexpr int most_vain_steps = 4;
+constexpr double in_vain = 0.9;
 /// Of a step: ends that are nearer are the same.
 constexpr double same_time = 1.0e-9;
 
@@ -117,12 +122,14 @@ std::optional<Failed> PassiveWay::window(const TimeWindow& window, int records,
   return std::nullopt;
 }
 
-/// Whole parts of the nominal step, halved where a step is refused.
+/// Whole parts of the nominal step, halved where a step is refused. With inertia steps become
+/// shorter towards a window's end, which what is crushed needs; statics would settle after each.
 std::optional<Failed> PassiveWay::advance_to(double end, double& time, PassiveRecord& record) {
   while (time < end) {
     const double left = end - time;
-    const double parts = std::ceil(left / nominal_ - same_time);
-    const double length = left / parts / std::ldexp(1.0, level_);
+    const int halved = statics() ? level_ : 0;
+    const double parts = std::ceil(std::ldexp(left / nominal_, halved) - same_time);
+    const double length = left / parts / std::ldexp(1.0, level_ - halved);
     const double next = left - length < same_time * length ? end : time + length;
     if (step(time, next, record, level_ >= most_halvings - 4)) {
       time = next;
@@ -162,18 +169,30 @@ bool PassiveWay::step(double begin, double end, PassiveRecord& record, bool leni
   return true;
 }
 
-/// Until what held bodies without inertia in a step no longer does.
+/// Until what held bodies without inertia in a step no longer does: they are held more and more
+/// loosely, by what is proportional to how far they go. Where impulses are not found for what is
+/// held loosely it is held more.
 void PassiveWay::settle(double begin, double end, bool lenient) {
-  const double moved = step_->farthest();
-  for (int k = 0; k < most_settling_steps; ++k) {
+  double held = step_->farthest();  // [m] that a step would go under it by what holds at first
+  farthest_ = std::max(farthest_, held);
+  double least = held;
+  int most = loosest, vain = 0;
+  for (int k = 0; k < most_settling_steps && vain < most_vain_steps; ++k) {
+    if (held <= settled * farthest_) return;
+    const double free = std::log2(settling_way * farthest_ / held) / 2.0;
+    const int looser = static_cast<int>(std::clamp<double>(free, std::min(1, most), most));
     bodies_.save_all();
-    if (!step_->settle(begin, end, lenient, ledger_)) {
+    if (!step_->settle(begin, end, looser, lenient, ledger_)) {
       bodies_.restore_all();
-      break;
+      most = looser - 1;
+      if (most < 0) break;
+      continue;
     }
-    if (step_->farthest() <= settled * moved) return;
+    held = std::ldexp(step_->farthest(), -2 * looser);
+    vain = held > in_vain * least ? vain + 1 : 0;
+    least = std::min(least, held);
   }
-  if (step_->farthest() > nearly_settled * moved) ++ledger_.unsettled;
+  if (least > nearly_settled * farthest_) ++ledger_.unsettled;
 }
 
 /// Which surfaces press on each other.
@@ -276,6 +295,7 @@ void PassiveWay::state(Archive& archive) {
   whole(archive, "level", level_);
   whole(archive, "good", good_);
   whole(archive, "held", held_);
+  archive.field("farthest", farthest_);
   near_->state(archive);
   step_->state(archive);
 }

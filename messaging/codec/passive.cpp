@@ -9,7 +9,7 @@ namespace abut {
 namespace {
 
 // A member added to the contract and forgotten here would silently arrive as zero.
-static_assert(sizeof(PassiveStep) == 2 * sizeof(double) + 2 * sizeof(std::vector<double>));
+static_assert(sizeof(PassiveStep) == 3 * sizeof(double) + 2 * sizeof(std::vector<double>));
 static_assert(sizeof(PassiveReply::Port) == 2 * sizeof(std::vector<double>));
 static_assert(sizeof(PassiveReply) ==
               2 * sizeof(std::vector<double>) + sizeof(BodyRecord) + sizeof(double));
@@ -57,6 +57,12 @@ void decode_place(Bytes bytes, const SurfaceSize& port, const FieldPath& path,
   check(to.velocity, index(port.width()), false, FieldPath{&path, "velocity"});
 }
 
+std::int32_t decode_looser(std::int64_t value, const FieldPath& path) {
+  if (value < 0 || value > PassiveStep::loosest)
+    path.fail(fmt::format("is {}, not within 0 and {}", value, PassiveStep::loosest));
+  return static_cast<std::int32_t>(value);
+}
+
 }  // namespace
 
 std::size_t pressed_values(const PassiveStep& asked, const Description& body) {
@@ -73,6 +79,7 @@ void encode(const PassiveStep& from, WireWriter& to) {
     to.numbers(v1::PassivePush::kImpulseFieldNumber, from.impulses[p]);
     to.close(Step::kPortsFieldNumber, before);
   }
+  to.integer(Step::kLooserFieldNumber, from.looser);
   to.number(Step::kEndFieldNumber, from.end);
   to.number(Step::kBeginFieldNumber, from.begin);
 }
@@ -81,6 +88,7 @@ void decode(Bytes bytes, const Description& body, PassiveStep& to) {
   const FieldPath path{nullptr, "passive_step"};
   const FieldPath all_ports{&path, "ports"};
   to.begin = to.end = 0.0;
+  to.looser = 0;
   to.impulses.resize(body.ports.size());
   to.pressed.resize(body.ports.size());
   std::size_t ports = 0;
@@ -91,6 +99,9 @@ void decode(Bytes bytes, const Description& body, PassiveStep& to) {
         break;
       case Step::kEndFieldNumber:
         to.end = number(from.number(), FieldPath{&path, "end"});
+        break;
+      case Step::kLooserFieldNumber:
+        to.looser = decode_looser(from.integer(), FieldPath{&path, "looser"});
         break;
       case Step::kPortsFieldNumber:
         if (ports >= body.ports.size()) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/assert.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/solve/matrix_sum.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
@@ -54,7 +55,18 @@ bool MidpointStep::FreeStep::is_of(const Motion& motion, double from, double unt
 MidpointStep::MidpointStep(Body body)
     : body_(std::move(body)),
       free_(body_.problem->model->dofs(), body_.problem->supports),
-      inertia_(diagonal_matrix(body_.mass)) {}
+      mass_(body_.mass),
+      inertia_(diagonal_matrix(mass_)) {}
+
+void MidpointStep::loosen(int looser) {
+  ABUT_ASSERT(body_.rests || looser == 0);
+  if (looser == looser_) return;
+  looser_ = looser;
+  mass_ = std::ldexp(1.0, -2 * looser) * body_.mass;
+  inertia_ = diagonal_matrix(mass_);
+  factors_.clear();
+  unpushed_.end = unpushed_.start - 1.0;  // of no step
+}
 
 std::optional<Failed> MidpointStep::step(Motion& motion, double start, double end,
                                          const Vector& impulse) {
@@ -72,7 +84,7 @@ std::optional<Failed> MidpointStep::step(Motion& motion, double start, double en
 /// The first guess is the free motion. Supports' mean velocity is that of their way; those of a
 /// body that rests are at its end in the middle.
 void MidpointStep::begin(const Motion& motion, double start, const Vector& impulse) {
-  change_.setZero(body_.mass.size());
+  change_.setZero(mass_.size());
   held_.clear();
   const double ways = body_.rests ? 2.0 : 1.0;
   for (const Prescribed& p : body_.problem->supports) {
@@ -80,7 +92,7 @@ void MidpointStep::begin(const Motion& motion, double start, const Vector& impul
     change_(p.dof) = 2.0 * (ways * held_.back() / length_ - motion.v[p.dof]);
   }
   follow(motion);
-  loads_.setZero(body_.mass.size());
+  loads_.setZero(mass_.size());
   const double at = body_.rests ? end_ : start + 0.5 * length_;
   for (const Load* load : body_.loads) load->add(at, middle_, loads_);
   given_ = impulse + length_ * loads_;
@@ -103,7 +115,7 @@ double MidpointStep::potential() {
   constexpr double digits = 2.0e-15;  // of sums over many coordinates
   double moving = 0.0, given = 0.0;
   for (const int i : free_.list()) {
-    moving += 0.125 * body_.mass(i) * change_(i) * change_(i);
+    moving += 0.125 * mass_(i) * change_(i) * change_(i);
     given += 0.25 * given_(i) * change_(i);
   }
   const double inner = response_.stored + response_.dissipation;
@@ -119,7 +131,7 @@ double MidpointStep::residual() {
   left_.resize(free_.count());
   for (int k = 0; k < free_.count(); ++k) {
     const int i = free_.list()[k];
-    left_(k) = given_(i) - length_ * response_.force(i) - body_.mass(i) * change_(i);
+    left_(k) = given_(i) - length_ * response_.force(i) - mass_(i) * change_(i);
   }
   return left_.norm();
 }
@@ -128,7 +140,7 @@ double MidpointStep::residual() {
 double MidpointStep::roundoff() {
   double sum = 0.0;
   for (const int i : free_.list()) {
-    const double part = std::abs(given_(i)) + std::abs(body_.mass(i) * change_(i));
+    const double part = std::abs(given_(i)) + std::abs(mass_(i) * change_(i));
     sum += part * part;
   }
   return length_ * body_.problem->model->roundoff(middle_) +
@@ -215,11 +227,11 @@ std::optional<Failed> MidpointStep::iterate(const Motion& motion) {
         return std::nullopt;
       case Search::stuck:
         if (!std::exchange(afresh, true)) break;  // by a tangent of another place
-        report.residual = size / std::max(given_.norm(), body_.mass.maxCoeff());
+        report.residual = size / std::max(given_.norm(), mass_.maxCoeff());
         return failed_newton(report, end_);
     }
   }
-  report.residual = residual() / std::max(given_.norm(), body_.mass.maxCoeff());
+  report.residual = residual() / std::max(given_.norm(), mass_.maxCoeff());
   return failed_newton(report, end_);
 }
 
@@ -275,12 +287,12 @@ MidpointStep::Factors* MidpointStep::factors() {
   }
   if (tangent_.size() == 0) {
     ModelResponse rest;
-    const std::vector<double> still(index(body_.mass.size()), 0.0);
+    const std::vector<double> still(index(mass_.size()), 0.0);
     if (!body_.problem->model->evaluate(still, {}, Model::Want::tangent, rest)) return nullptr;
     tangent_ = rest.tangent;
   }
   SparseMatrix whole = inertia_ + 0.25 * length * length * tangent_, reduced;
-  FreeCoordinates(static_cast<int>(body_.mass.size()), body_.problem->supports)
+  FreeCoordinates(static_cast<int>(mass_.size()), body_.problem->supports)
       .extract(whole, reduced);
   Factors made{length, make_direct_solver(Pivots::every), {}, true};
   if (!made.solver->factor(reduced)) return nullptr;
@@ -308,7 +320,7 @@ std::optional<Failed> MidpointStep::finish(Motion& motion, const Vector& impulse
   motion.force.assign(motion.q.size(), 0.0);
   for (const Prescribed& p : body_.problem->supports) {
     const std::size_t i = index(p.dof);
-    const double before = motion.v[i], after = moved_[i] / length_, mass = body_.mass(p.dof);
+    const double before = motion.v[i], after = moved_[i] / length_, mass = mass_(p.dof);
     const double answer = mean(p.dof) - impulse(p.dof) / length_;
     work += answer * moved_[i] + 0.5 * mass * (after * after - before * before);
     motion.force[i] = answer - loads_(p.dof) + mass * (after - before) / length_;
@@ -354,7 +366,7 @@ bool MidpointStep::find_columns(const Motion& motion, const PortMap& ports, Line
   Eigen::MatrixXd right(free_.count(), static_cast<Eigen::Index>(values.size())), answer;
   for (std::size_t k = 0; k < values.size(); ++k) {
     unit[values[k]] = 1.0;
-    lifted.setZero(body_.mass.size());
+    lifted.setZero(mass_.size());
     ports.lift(motion.q, unit, lifted);
     unit[values[k]] = 0.0;
     free_.pick(lifted, picked);

@@ -38,6 +38,8 @@ class MidpointStep {
   explicit MidpointStep(Body body);
 
   const Vector& mass() const { return body_.mass; }
+  /// Of a body that rests: its mass in what follows is 4^-looser of what it is.
+  void loosen(int looser);
   /// From `begin` to `end`. Forces of supports [N], means over the step, are left in motion.force.
   /// When it fails the motion is as before.
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double begin, double end,
@@ -45,7 +47,7 @@ class MidpointStep {
   /// [m] (dofs) by which the last step moved the coordinates.
   const std::vector<double>& moved() const { return moved_; }
   /// [N] (dofs) that its mass bore in it, as a mean, and what acted beside.
-  Vector borne() const { return body_.mass.cwiseProduct(change_) / length_; }
+  Vector borne() const { return mass_.cwiseProduct(change_) / length_; }
   Vector acting() const { return given_ / length_; }
   /// Compliance [M.129] of some values of the ports after a step, (values, values) row by row.
   /// False: there is none.
@@ -94,6 +96,8 @@ class MidpointStep {
 
   Body body_;
   FreeCoordinates free_;
+  Vector mass_;     // [kg] (dofs) in a step
+  int looser_ = 0;  // than that of the body
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
   FreeStep unpushed_;
   Factors own_;  // of a step under impulses

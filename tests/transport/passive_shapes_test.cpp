@@ -27,6 +27,7 @@ struct Talk {
     if (dice.coin()) body.members = {{"all of it", 2.0, {0}}};
     step.begin = dice.coin() ? 0.0 : dice.value();
     step.end = step.begin + 0.5 + dice.value();
+    step.looser = dice.coin() ? 0 : dice.upto(PassiveStep::loosest);
     for (int p = dice.upto(3); p >= 0; --p) {
       body.ports.push_back({"port" + std::to_string(p), dice.surface(body.dim), false});
       const SurfaceSize size = size_of(body.ports.back().geometry);
@@ -64,6 +65,7 @@ void expect_equal(const PassiveStep& got, const PassiveStep& sent) {
   EXPECT_EQ(got.end, sent.end);
   EXPECT_EQ(got.impulses, sent.impulses);
   EXPECT_EQ(got.pressed, sent.pressed);
+  EXPECT_EQ(got.looser, sent.looser);
 }
 
 void expect_equal(const PassiveReply& got, const PassiveReply& sent) {
@@ -202,6 +204,9 @@ TEST(PassiveShapes, StepsThatDoNotFitTheBodyAreRefused) {
   EXPECT_EQ(asked([](PassiveStep& s) { s.end = s.begin; }), "accepted");  // tells where it is
   EXPECT_EQ(asked([](PassiveStep& s) { s.end = std::numeric_limits<double>::infinity(); }),
             "passive_step.end is not finite: inf");
+  for (const std::int32_t wrong : {-1, 21})
+    EXPECT_EQ(asked([wrong](PassiveStep& s) { s.looser = wrong; }),
+              fmt::format("passive_step.looser is {}, not within 0 and 20", wrong));
 }
 
 TEST(PassiveShapes, RepliesThatDoNotFitTheStepAreRefused) {

@@ -67,8 +67,10 @@ class PassiveRun {
   std::size_t dim() const { return index(body_->describe().dim); }
 
   Outcome attempt(double length, const std::vector<double>& impulses,
-                  const std::vector<std::int32_t>& pressed, PassiveReply& reply) {
+                  const std::vector<std::int32_t>& pressed, PassiveReply& reply,
+                  std::int32_t looser = 0) {
     PassiveStep request;
+    request.looser = looser;
     request.begin = time;
     request.end = time + length;
     request.impulses = {impulses};
@@ -78,9 +80,9 @@ class PassiveRun {
   }
   /// Under impulses (values) on the port; empty: none.
   PassiveReply step(double length, const std::vector<double>& impulses = {},
-                    const std::vector<std::int32_t>& pressed = {}) {
+                    const std::vector<std::int32_t>& pressed = {}, std::int32_t looser = 0) {
     PassiveReply reply;
-    const Outcome outcome = attempt(length, impulses, pressed, reply);
+    const Outcome outcome = attempt(length, impulses, pressed, reply, looser);
     if (const Failed* failed = std::get_if<Failed>(&outcome))
       throw std::runtime_error(failed->detail);
     time += length;

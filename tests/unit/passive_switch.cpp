@@ -254,5 +254,32 @@ TEST(PassiveSwitch, StaticsRestInBalance) {
   }
 }
 
+/// One cell, whose only motion under an even pull is that of a spring k: what holds it is one of
+/// c/4^n beside it, so a step goes by F/(k + c/4^n).
+TEST(PassiveSwitch, StaticsAreHeldMoreAndMoreLoosely) {
+  PassiveText text;
+  text.cells = 1;
+  text.scheme = "quasi_static: {step: 0.1}";
+  text.material = "linear_elastic: {youngs_modulus: 100.0, poissons_ratio: 0.0, density: 2.0}";
+  text.more = "constraints: {base: {on: left, fixed: true}}";
+  const double length = 0.1, force = 1.0e-4, spring = 100.0;
+  std::vector<double> gone;
+  for (const std::int32_t looser : {0, 1, 2, 6, 0}) {
+    PassiveRun run(text.build());
+    std::vector<double> impulses(run.values(), 0.0);
+    ASSERT_EQ(impulses.size(), 4u);
+    impulses[0] = impulses[2] = 0.5 * force * length;
+    gone.push_back(run.step(length, impulses, {}, looser).ports[0].displacement[0]);
+  }
+  const double holds = force / gone[0] - spring;
+  EXPECT_GT(holds, 0.01 * spring);
+  const auto held = [&](double share) { return force / (spring + share * holds); };
+  // Round-off of a displacement of 1e-6 in coordinates of 1.
+  EXPECT_NEAR(gone[1], held(1.0 / 4.0), 1.0e-9 * gone[1]);
+  EXPECT_NEAR(gone[2], held(1.0 / 16.0), 1.0e-9 * gone[2]);
+  EXPECT_NEAR(gone[3], held(1.0 / 4096.0), 1.0e-9 * gone[3]);
+  EXPECT_EQ(gone[4], gone[0]);
+}
+
 }  // namespace
 }  // namespace abut::passive_switch_tests
