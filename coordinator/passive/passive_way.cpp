@@ -29,8 +29,8 @@ constexpr double most_of_share = 0.99;
 /// to rest.
 constexpr int most_settling_steps = 60;
 constexpr double settled = 1.0e-4, nearly_settled = 1.0e-3;
-/// They are held so loosely that they should go this far, in parts of the farthest step. What drifts
-/// along a way on which nothing else holds it would go farther in vain.
+/// They are held so loosely that they should go this far, in parts of the farthest step. What
+/// drifts along a way on which nothing else holds it would go farther in vain.
 constexpr double settling_way = 0.5;
 constexpr int loosest = 6;
 /// Settling ends after so many steps in a row that leave more than this share of what held.

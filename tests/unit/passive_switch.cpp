@@ -274,10 +274,11 @@ TEST(PassiveSwitch, StaticsAreHeldMoreAndMoreLoosely) {
   const double holds = force / gone[0] - spring;
   EXPECT_GT(holds, 0.01 * spring);
   const auto held = [&](double share) { return force / (spring + share * holds); };
-  // Round-off of a displacement of 1e-6 in coordinates of 1.
-  EXPECT_NEAR(gone[1], held(1.0 / 4.0), 1.0e-9 * gone[1]);
-  EXPECT_NEAR(gone[2], held(1.0 / 16.0), 1.0e-9 * gone[2]);
-  EXPECT_NEAR(gone[3], held(1.0 / 4096.0), 1.0e-9 * gone[3]);
+  // Displacements of 1e-6 are differences of places up to 1.
+  const double rounding = 10.0 * std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(gone[1], held(1.0 / 4.0), rounding);
+  EXPECT_NEAR(gone[2], held(1.0 / 16.0), rounding);
+  EXPECT_NEAR(gone[3], held(1.0 / 4096.0), rounding);
   EXPECT_EQ(gone[4], gone[0]);
 }
 
