@@ -186,7 +186,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
     if (round > 0 && ((unfit < fit * near_.thickness() && ties_fit()) || last)) {
-      if (work <= allowed_ + released_ + rounding_of_work * most_ && ties_.passive()) {
+      if (work <= most_work() + rounding_of_work * most_ && ties_.passive()) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
         if (last || ++checks > most_checks) {
@@ -323,6 +323,13 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
     unfit = std::max(unfit, -over);
     if (row.normal_impulse > no_impulse * largest) unfit = std::max(unfit, 0.1 * std::abs(over));
   }
+}
+
+/// [J] of contact in the step: push-out's part, or, where rows give back what they took, no more
+/// than all that is lost.
+double CommonStep::most_work() const {
+  return released_ > 0.0 ? std::min(allowed_ + released_, credit_ + allowed_ / paid_share)
+                         : allowed_;
 }
 
 /// The bodies answered under the impulses of so many of the rows.

@@ -81,6 +81,7 @@ class CommonStep {
   void find_impulses(bool any);
   void press_rows(bool any);
   bool ties_fit() const;
+  double most_work() const;
   void take_answer(int owner, double softer);
   void follow_ties();
   void rows_ask(double& unfit, double& work) const;
