@@ -21,14 +21,28 @@ namespace abut {
 
 namespace {
 
-/// Whether what keeps its mass holds the layer of an undeformed body: inner nodes that lie on a
-/// line let the surface around them turn.
+/// Whether what keeps its mass holds the layer of an undeformed body: a single inner node, and ones
+/// that lie on a line, let the surface around them turn. Rounding may give a tangent factors then,
+/// so its softest motion is looked for by iterations with them.
 bool is_held(FeModel& model, std::size_t massless) {
   if (massless == 0) return true;
+  constexpr double singular = 1.0e12;  // stiffest over softest; that of meshes is below 1e9
+  constexpr int iterations = 4;
   const std::vector<double> q(index(model.dofs()), 0.0), history(model.history_size(), 0.0);
   LayerResponse response;
-  return model.evaluate_layer(q, history, Model::Want::tangent, response) &&
-         make_own_solver()->factor(response.tangent);
+  const std::unique_ptr<LinearSolver> solver = make_own_solver();
+  if (!model.evaluate_layer(q, history, Model::Want::tangent, response) ||
+      !solver->factor(response.tangent))
+    return false;
+  const double stiffest = response.tangent.diagonal().maxCoeff();
+  Vector softest(static_cast<Eigen::Index>(massless)), next;
+  for (Eigen::Index i = 0; i < softest.size(); ++i) softest(i) = std::cos(1.0 + double(i * i));
+  for (int k = 0; k < iterations; ++k) {
+    softest.normalize();
+    if (!solver->solve(softest, next) || !next.allFinite()) return false;
+    softest.swap(next);
+  }
+  return stiffest * softest.norm() < singular;
 }
 
 /// Of its mass, by how much a node may gain or lose so that centres of mass are one; less than
