@@ -130,6 +130,15 @@ bool is_of_meshes(const TieLayout::Member& member, const Eigen::VectorXd& left, 
   return most.distance <= share * Bend(member, rows, bodies).most();
 }
 
+/// Whether it may be what motions of unlike steps leave between their instants, which is little of
+/// what they go: where three bodies meet, no force takes it away.
+bool is_of_steps(const TieLayout::Member& member, double seen, double tolerance,
+                 const Bodies& bodies) {
+  constexpr double most = 100.0;  // tolerances
+  const auto step = [&](std::size_t s) { return bodies.describe(member.joint->sides[s].body).step; };
+  return step(0) != step(1) && seen <= most * tolerance;
+}
+
 void add_once(const std::string& name, std::vector<std::string>& names) {
   if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
@@ -167,9 +176,11 @@ Unanswered judge_unanswered(const TieLayout& layout, const Eigen::VectorXd& jump
     layout.gather(member, jump - rest, answered);
     if (member.tie->seen(answered.lpNorm<Eigen::Infinity>()) > tolerance) return {};
     all.push_back(largest(member, left));
-    if (member.tie->seen_by_motion(left.lpNorm<Eigen::Infinity>()) <= tolerance) continue;
+    const double seen = member.tie->seen_by_motion(left.lpNorm<Eigen::Infinity>());
+    if (seen <= tolerance) continue;
     wrong = true;
-    meshes = meshes && is_of_meshes(member, left, all.back(), bodies);
+    meshes = meshes && (is_of_steps(member, seen, tolerance, bodies) ||
+                        is_of_meshes(member, left, all.back(), bodies));
   }
   if (!wrong) return {};
   if (meshes) return {{}, true};

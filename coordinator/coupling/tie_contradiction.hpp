@@ -12,7 +12,7 @@ namespace abut {
 struct Unanswered {
   /// Words that tell the interfaces, their bodies, where, how far, and the remedy; empty: none.
   std::string contradiction;
-  /// They are no more than what meshes leave of motions that are given to both sides.
+  /// They are no more than what meshes, or unlike steps, leave of motions that both sides have.
   bool meshes = false;
 };
 
