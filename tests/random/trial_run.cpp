@@ -264,7 +264,7 @@ struct Kept {
   double scale = 0.0, impulse = 0.0;  // [J], [N s] most so far
 };
 
-/// That of the middle of a run, which goes on to its end.
+/// That of the middle of a run, which goes on to its end. None where one window leads there.
 Kept keep_middle(const Scene& scene, const Document& document, double patience) {
   const Placed placed = place(scene, document, false);
   TrialRun nobody_asks;
@@ -272,7 +272,8 @@ Kept keep_middle(const Scene& scene, const Document& document, double patience) 
   Controller controller(scene, placed.pointers, {&judge}, &judge.stop);
   Kept kept;
   controller.between_windows = [&](const Pause&) {
-    if (!kept.run.empty() || judge.time < 0.5 * (scene.time.begin + scene.time.end)) return;
+    const double middle = 0.5 * (scene.time.begin + scene.time.end);
+    if (!kept.run.empty() || judge.time < middle || judge.time >= scene.time.end) return;
     kept.run = controller.save();
     for (Subdomain* body : placed.pointers) kept.bodies.push_back(body->checkpoint());
     kept.start = judge.start;
