@@ -117,6 +117,7 @@ class SolidInterior final : public Interior,
   void spread_velocities();
   void hand_on(Vector& impulse);
   void gather_velocities();
+  double held_energy() const;
   void keep_momentum(const Eigen::MatrixXd& motions, const Vector& momentum);
   template <class Energy>
   void keep_momenta(const Vector& momentum, double most, const Energy& energy);

@@ -120,6 +120,18 @@ double SolidInterior::moving_energy() const {
   return 0.5 * view(motion.v).dot(midpoint_->mass().cwiseProduct(view(motion.v)));
 }
 
+/// [J] kinetic, in the form that the body is in, of what supports move: v_h (M v)_h / 2.
+/// Whatever mass a change of form brings there, it moves as they say, and that is their work.
+double SolidInterior::held_energy() const {
+  if (parts_.reduced) return 0.0;
+  const auto v = view(state_.motion.v);
+  const SparseMatrix& mass = mass_of_form();  // symmetric
+  double energy = 0.0;
+  for (const Prescribed& p : parts_.problem->supports)
+    energy += 0.5 * v(p.dof) * mass.col(p.dof).dot(v);
+  return energy;
+}
+
 /// Rigid motions of the body where it is, that no support holds, all or translations alone:
 /// (coordinates, k).
 Eigen::MatrixXd SolidInterior::free_motions(bool turns) {
@@ -174,9 +186,13 @@ double SolidInterior::enter() {
   }
   const double guard = store_guarded();
   const Vector momentum = parts_.reduced ? Vector() : nodal_momentum();
-  const double before = parts_.scheme.integrator->kinetic(motion);
+  double before = parts_.scheme.integrator->kinetic(motion);
+  const double held = held_energy();
   spread_velocities();
   motion.a.clear();
+  const double work = held_energy() - held;
+  motion.external_work += work;
+  before += work;
   motion.force.assign(motion.v.size(), 0.0);
   std::ranges::fill(state_.port_force, 0.0);
   if (surfaces_ != nullptr) surfaces_->let_go();
@@ -329,10 +345,9 @@ std::optional<Failed> SolidInterior::restart(double time, double& work) {
   std::ranges::fill(state_.port_force, 0.0);
   state_.time = time;
   if (parts_.reduced) return std::nullopt;
-  for (const Prescribed& p : parts_.problem->supports) {
-    const double now = motion.v[p.dof], then = v[p.dof];
-    work += 0.5 * midpoint_->mass()(p.dof) * (now * now - then * then);
-  }
+  for (const Prescribed& p : parts_.problem->supports)
+    work -= 0.5 * midpoint_->mass()(p.dof) * v[p.dof] * v[p.dof];
+  work += held_energy();
   if (parts_.model->massless().empty()) return std::nullopt;
   const Vector& loads = parts_.problem->external_force(time, motion.q);
   for (const int dof : parts_.model->massless()) work += loads(dof) * (motion.q[dof] - q[dof]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "base/index.hpp"
 #include "base/one_each.hpp"
@@ -76,6 +77,8 @@ void MeetingCorners::find(const CornerSurface& k, const CornerSurface& n,
   find_verdicts(pairs);
   if (verdicts_.empty()) return;
   crosses_ = std::ranges::any_of(verdicts_, &Verdict::crosses);
+  k_now_.clear(k_.now);
+  n_now_.clear(n_.now);
   for (const FacetPair& pair : pairs)
     if (is_dropped(pair)) dropped_.push_back(pair);
 }
@@ -93,44 +96,107 @@ void MeetingCorners::find_verdicts(std::span<const FacetPair> pairs) {
         if (has((*n_.wedges)[two], pair.n)) verdicts_.push_back({.k = one, .n = two});
     }
   keep_one_each(verdicts_, wedges);
+  k_before_.clear(k_.before);
+  n_before_.clear(n_.before);
   for (Verdict& verdict : verdicts_) judge(verdict);
   begins_.assign(index(k_.wedges->count()) + 1, 0);
   for (const Verdict& verdict : verdicts_) ++begins_[index(verdict.k) + 1];
   std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
 }
 
-std::span<const MeetingCorners::Verdict> MeetingCorners::verdicts_of(std::int32_t k) const {
+std::span<MeetingCorners::Verdict> MeetingCorners::verdicts_of(std::int32_t k) {
   const std::size_t from = begins_[index(k)], to = begins_[index(k) + 1];
   return std::span(verdicts_).subspan(from, to - from);
 }
 
-/// One candidate; planes of a kind that are nearly the same count once. Edges that go on straight
-/// beyond their wedge do so by another length of it.
-void MeetingCorners::look_along(const Wedge& a, const Wedge& b, Plane plane) {
+void MeetingCorners::Extent::set(const PosedSurface& surface, const Wedge& wedge) {
+  points.clear();
+  for (const std::int32_t node : wedge.nodes) points.push_back(surface.point(node));
+  edge = along_edge(surface, wedge.ends);
+  beyond = {wedge.beyond[0] >= 0, wedge.beyond[1] >= 0};
+}
+
+/// Edges that go on straight beyond their wedge do so by another length of it.
+std::array<double, 2> MeetingCorners::Extent::along(const Eigen::Vector3d& normal) const {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const std::int32_t node : a.nodes)
-    low = std::min(low, plane.normal.dot(k_.before.point(node)));
-  for (const std::int32_t node : b.nodes)
-    high = std::max(high, plane.normal.dot(n_.before.point(node)));
-  const double up = plane.normal.dot(along_edge(k_.before, a.ends));
-  const double on = plane.normal.dot(along_edge(n_.before, b.ends));
-  low -= std::max({0.0, a.beyond[0] >= 0 ? up : 0.0, a.beyond[1] >= 0 ? -up : 0.0});
-  high += std::max({0.0, b.beyond[0] >= 0 ? -on : 0.0, b.beyond[1] >= 0 ? on : 0.0});
-  plane.apart = low - high;
+  for (const Eigen::Vector3d& x : points) {
+    const double at = normal.dot(x);
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  const double up = normal.dot(edge);
+  low -= std::max({0.0, beyond[0] ? up : 0.0, beyond[1] ? -up : 0.0});
+  high += std::max({0.0, beyond[0] ? -up : 0.0, beyond[1] ? up : 0.0});
+  return {low, high};
+}
+
+/// Whether it has points less than `far` [m] before a plane, and points less than that behind it.
+bool MeetingCorners::Extent::is_on_both_sides(const Eigen::Vector3d& normal, double plane,
+                                              double far) const {
+  bool below = false, above = false;
+  for (const Eigen::Vector3d& x : points) {
+    const double at = normal.dot(x) - plane;
+    below = below || at < far;
+    above = above || -at < far;
+    if (below && above) return true;
+  }
+  return false;
+}
+
+void MeetingCorners::Normals::clear(const PosedSurface& surface) {
+  of.resize(index(surface.facet_count()));
+  known.assign(of.size(), 0);
+}
+
+const Eigen::Vector3d& MeetingCorners::Normals::at(const PosedSurface& surface,
+                                                   std::int32_t facet) {
+  if (std::exchange(known[facet], 1) == 0) of[facet] = normal_of(surface, facet);
+  return of[facet];
+}
+
+void MeetingCorners::look_at_facets(const Wedge& a, const Wedge& b) {
+  size_ = std::min(size_of(k_.before, a), size_of(n_.before, b));
+  k_extent_.set(k_.before, a);
+  n_extent_.set(n_.before, b);
+  planes_.clear();
+  most_ = -std::numeric_limits<double>::infinity();
+  for (const std::int32_t f : b.planes)
+    look_along({Kind::n_plane, f, {}, {}, 1.0, n_before_.at(n_.before, f), 0.0});
+  for (const std::int32_t f : a.planes)
+    look_along({Kind::k_plane, f, {}, {}, 1.0, -k_before_.at(k_.before, f), 0.0});
+}
+
+void MeetingCorners::look_along(Plane plane) {
+  plane.apart = k_extent_.along(plane.normal)[0] - n_extent_.along(plane.normal)[1];
+  keep(plane);
+}
+
+void MeetingCorners::look_across(const Ends& one, const Ends& two) {
+  const Eigen::Vector3d u = along_edge(k_.before, one), v = along_edge(n_.before, two);
+  const Eigen::Vector3d across = u.cross(v);
+  if (!(across.squaredNorm() > parallel * u.squaredNorm() * v.squaredNorm())) return;
+  const Eigen::Vector3d normal = across.normalized();
+  // Nearly all fall behind by a few points already.
+  const double on = normal.dot(n_.before.point(two[0]));
+  if (k_extent_.is_on_both_sides(normal, on, worst())) return;
+  const std::array<double, 2> k = k_extent_.along(normal), n = n_extent_.along(normal);
+  keep({Kind::edges, -1, one, two, 1.0, normal, k[0] - n[1]});
+  keep({Kind::edges, -1, one, two, -1.0, -normal, n[0] - k[1]});
+}
+
+/// [m] Planes that separate by less neither are the best nor share its normal.
+double MeetingCorners::worst() const { return most_ - (round + 2.0 * corner_rounding) * size_; }
+
+/// One candidate; planes of a kind that are nearly the same count once.
+void MeetingCorners::keep(const Plane& plane) {
+  if (plane.apart < worst()) return;
+  most_ = std::max(most_, plane.apart);
   for (Plane& known : planes_) {
     if (known.kind != plane.kind || known.normal.dot(plane.normal) < same_direction) continue;
     if (plane.apart > known.apart + corner_rounding * size_) known = plane;
     return;
   }
   planes_.push_back(plane);
-}
-
-void MeetingCorners::look_across(const Wedge& a, const Wedge& b, const Ends& one, const Ends& two) {
-  const Eigen::Vector3d u = along_edge(k_.before, one), v = along_edge(n_.before, two);
-  const Eigen::Vector3d across = u.cross(v);
-  if (!(across.squaredNorm() > parallel * u.squaredNorm() * v.squaredNorm())) return;
-  for (const double sign : {1.0, -1.0})
-    look_along(a, b, {Kind::edges, -1, one, two, sign, sign * across.normalized(), 0.0});
 }
 
 Eigen::Vector3d MeetingCorners::normal_now(const Plane& plane) const {
@@ -160,16 +226,21 @@ const MeetingCorners::Plane* MeetingCorners::joining(const Plane& best, const We
   return most;
 }
 
+/// Where a facet's plane parts them by more than is near, no row holds them; all else is asked of
+/// few of them (is_dropped), and is dear.
 void MeetingCorners::judge(Verdict& verdict) {
+  look_at_facets((*k_.wedges)[verdict.k], (*n_.wedges)[verdict.n]);
+  const double far = reach() + 2.0 * corner_rounding * size_;
+  verdict.told = most_ > far;
+  if (!verdict.told) judge_whole(verdict);
+}
+
+void MeetingCorners::judge_whole(Verdict& verdict) {
   const Wedge &a = (*k_.wedges)[verdict.k], &b = (*n_.wedges)[verdict.n];
-  size_ = std::min(size_of(k_.before, a), size_of(n_.before, b));
-  planes_.clear();
-  for (const std::int32_t f : b.planes)
-    look_along(a, b, {Kind::n_plane, f, {}, {}, 1.0, normal_of(n_.before, f), 0.0});
-  for (const std::int32_t f : a.planes)
-    look_along(a, b, {Kind::k_plane, f, {}, {}, 1.0, -normal_of(k_.before, f), 0.0});
+  verdict.whole = true;
+  look_at_facets(a, b);
   for (const Ends& one : a.edges)
-    for (const Ends& two : b.edges) look_across(a, b, one, two);
+    for (const Ends& two : b.edges) look_across(one, two);
   const Plane& best = *std::ranges::max_element(planes_, [this](const Plane& p, const Plane& q) {
     return p.apart + corner_rounding * size_ < q.apart;
   });
@@ -192,8 +263,8 @@ void MeetingCorners::judge(Verdict& verdict) {
 /// Edges that cross tell of all facets around them. Else a pair stays where a plane that joins its
 /// wedges lies along it, and is dropped where there is another: by wedges that hold it or, where it
 /// is steep, that it touches.
-bool MeetingCorners::is_dropped(FacetPair pair) const {
-  const Eigen::Vector3d out_k = normal_of(k_.now, pair.k), out_n = normal_of(n_.now, pair.n);
+bool MeetingCorners::is_dropped(FacetPair pair) {
+  const Eigen::Vector3d &out_k = k_now_.at(k_.now, pair.k), &out_n = n_now_.at(n_.now, pair.n);
   if (out_k.dot(out_n) > -options_.facing) return false;  // it is none
   const bool faced = out_k.dot(out_n) <= -same_direction;
   const std::span<const std::int32_t> at_k = k_.wedges->at(pair.k), at_n = n_.wedges->at(pair.n);
@@ -205,15 +276,17 @@ bool MeetingCorners::is_dropped(FacetPair pair) const {
     const bool touched = std::ranges::binary_search(at_k, one);
     // both ordered: what they have in common is met on one way through them
     auto two = twos.begin();
-    for (const Verdict& v : verdicts_of(one)) {
+    for (Verdict& v : verdicts_of(one)) {
       two = std::find_if(two, twos.end(), [&v](std::int32_t n) { return n >= v.n; });
       if (two == twos.end()) break;
       if (*two != v.n || !v.told) continue;
       if (faced && !has((*n_.wedges)[v.n], pair.n)) continue;
       if (v.crosses) return true;
       if (!touched || !std::ranges::binary_search(at_n, v.n)) continue;
+      if (!v.whole) judge_whole(v);
       const bool fits = out_n.dot(v.normal) >= along && -out_k.dot(v.normal) >= along;
       (v.joined && fits ? stays : other) = true;
+      if (stays && !crosses_) return false;
     }
   }
   return other && !stays;

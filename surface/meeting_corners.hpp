@@ -59,6 +59,7 @@ class MeetingCorners {
     bool told = false;          // a plane that means something was found
     bool joined = false;        // facets of both lie along it
     bool crosses = false;       // edge across edge, near
+    bool whole = false;         // what joins them, and along what, has been looked for
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
   struct Side {  // of a row: nodes and their shares
@@ -78,11 +79,15 @@ class MeetingCorners {
   double reach() const;
   void find_verdicts(std::span<const FacetPair> pairs);
   void judge(Verdict& verdict);
+  void judge_whole(Verdict& verdict);
   /// Of a wedge of K's, ordered by those of N's.
-  std::span<const Verdict> verdicts_of(std::int32_t k) const;
-  bool is_dropped(FacetPair pair) const;
-  void look_along(const Wedge& a, const Wedge& b, Plane plane);
-  void look_across(const Wedge& a, const Wedge& b, const Ends& one, const Ends& two);
+  std::span<Verdict> verdicts_of(std::int32_t k);
+  bool is_dropped(FacetPair pair);
+  void look_at_facets(const Wedge& a, const Wedge& b);
+  void look_along(Plane plane);
+  void look_across(const Ends& one, const Ends& two);
+  void keep(const Plane& plane);
+  double worst() const;
   Eigen::Vector3d normal_now(const Plane& plane) const;
   const Plane* joining(const Plane& best, const Wedge& a, const Wedge& b) const;
   void add_nodes(const Plane& best, const Wedge& of_nodes, const Wedge& of_facets);
@@ -94,10 +99,33 @@ class MeetingCorners {
   static Eigen::Vector3d place(const PosedSurface& surface, const Side& side);
   static void append(Side side, SparseRows& to);
 
+  /// Of one side of the two wedges that are looked at, before.
+  struct Extent {
+    std::vector<Eigen::Vector3d> points;  // [m] of its nodes
+    Eigen::Vector3d edge;                 // [m] its own, from end to end
+    std::array<bool, 2> beyond{};         // goes straight on at an end
+
+    void set(const PosedSurface& surface, const Wedge& wedge);
+    /// [m] of all of it along a normal, least and most.
+    std::array<double, 2> along(const Eigen::Vector3d& normal) const;
+    bool is_on_both_sides(const Eigen::Vector3d& normal, double plane, double far) const;
+  };
+  /// Unit normals of a surface's facets, each found when it is first asked for.
+  struct Normals {
+    std::vector<Eigen::Vector3d> of;
+    std::vector<char> known;
+
+    void clear(const PosedSurface& surface);
+    const Eigen::Vector3d& at(const PosedSurface& surface, std::int32_t facet);
+  };
+
   CornerSurface k_, n_;
+  Normals k_before_, n_before_, k_now_, n_now_;
+  Extent k_extent_, n_extent_;
   CornerOptions options_;
   double size_ = 0.0;  // [m] of the edges looked at
   std::vector<Plane> planes_;
+  double most_ = 0.0;       // [m] by which one of them separates
   Eigen::Vector3d shared_;  // normals of planes that separate nearly as well as the best
   std::vector<Verdict> verdicts_;
   std::vector<std::size_t> begins_;  // of the verdicts of each wedge of K's, and their end

@@ -104,6 +104,30 @@ TEST(PassiveSwitch, KeepsMomentumPlacesAndEnergy) {
   }
 }
 
+// Nodes that a support drives move as it says, whatever mass a form has there: what another mass on
+// them has or has not of kinetic energy is the support's work. All else stands, so that nothing
+// could pay for it. There and back, both are what they were.
+TEST(PassiveSwitch, SupportsDriveTheMassThatAFormBringsThem) {
+  for (PassiveText text : switched()) {
+    text.more = text.dim == 2 ? "constraints: {base: {on: left, x: '0.3 * t', y: '0'}}"
+                              : "constraints: {base: {on: left, x: '0.3 * t', y: '0', z: '0'}}";
+    SCOPED_TRACE(text.label());
+    const std::unique_ptr<Subdomain> body = text.build();
+    const BodyRecord own = advance(*body, 0.0, 0.0);
+    const double rounding = roundoff(1.0e4, own.energy.total());
+    const double lost = body->passive()->enter();
+    EXPECT_NEAR(lost, 0.0, rounding);
+    PassiveRun run(nullptr, *body, 0.0);
+    EXPECT_NEAR(kept(run.step(0.0).record), kept(own), rounding);
+    double left = 0.0;
+    ASSERT_TRUE(std::holds_alternative<Advanced>(body->passive()->leave(0.0, left)));
+    EXPECT_NEAR(left, 0.0, rounding);
+    const BodyRecord back = advance(*body, 0.0, 0.0);
+    EXPECT_NEAR(back.energy.kinetic, own.energy.kinetic, rounding);
+    EXPECT_NEAR(back.energy.external_work, own.energy.external_work, rounding);
+  }
+}
+
 // A surface without mass leaves the centre of mass elsewhere than where nodes of even shares have
 // it: what flies without turning has the angular momentum of its centre, in either form [M.150].
 TEST(PassiveSwitch, KeepsTheAngularMomentumOfWhatFlies) {
