@@ -6,6 +6,7 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "coordinator/coupling/state_fields.hpp"
 
@@ -143,6 +144,33 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   near_.find_on_ways(from_, to_, rows_);
   if (std::optional<Refusal> refused = iterate()) return refused;
   return accept(lenient, ledger);
+}
+
+std::string CommonStep::driven() const {
+  const auto moves = [this](const DistanceRow& row) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::int32_t point = row.features.points[i];
+      if (!row.counts(i) || points_.slot(point) < 0) continue;
+      const Eigen::MatrixXd& answers = points_.compliance(points_.owner(point));
+      const int dim = surfaces_.skin().dim, slot = points_.slot(point);
+      if (answers.rows() < slot + dim) return true;  // not told
+      if (answers.diagonal().segment(slot, dim).maxCoeff() > 0.0) return true;
+    }
+    return false;
+  };
+  const double still = negligible * near_.thickness() / length();
+  for (const DistanceRow& row : rows_) {
+    if (row_velocity(row, velocities_, 0) >= row.least() - still || moves(row)) continue;
+    const auto name = [&](int side) {
+      return bodies_.describe(surfaces_[row.first_point(side)].body).name;
+    };
+    const Eigen::Vector3d& at = from_[index(row.first_point(0))];
+    return fmt::format(
+        "supports and tools drive '{}' and '{}' onto each other near ({:.4g}) m, and nothing gives "
+        "way there: let them end earlier, or elsewhere",
+        name(0), name(1), fmt::join(at.data(), at.data() + surfaces_.skin().dim, ", "));
+  }
+  return {};
 }
 
 double CommonStep::farthest() const {

@@ -45,6 +45,8 @@ class CommonStep {
   bool settle(double begin, double end, int looser, bool lenient, PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }
+  /// What supports and ways drove onto each other in it, for people, with a remedy; empty: nothing.
+  std::string driven() const;
   /// The body that could not take it; -1: none alone.
   int culprit() const { return culprit_; }
 

@@ -143,9 +143,10 @@ std::optional<Failed> PassiveWay::advance_to(double end, double& time, PassiveRe
     }
     good_ = 0;
     if (++level_ <= most_halvings) continue;
-    if (!hold_rigid())
-      return Failed{Failed::Cause::step_too_small, time,
-                    "no passive step was found: " + step_->why()};
+    if (hold_rigid()) continue;
+    const std::string driven = step_->driven();
+    return Failed{Failed::Cause::step_too_small, time,
+                  "no passive step was found: " + (driven.empty() ? step_->why() : driven)};
   }
   return std::nullopt;
 }

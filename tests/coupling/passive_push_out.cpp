@@ -1,5 +1,6 @@
 // Goal: what parts surfaces that begin a little in each other is paid out of what contact has lost
-// for good, however much of its blows contact gives back. Oracle: energy does not grow.
+// for good, however much of its blows contact gives back; what supports drive into a tool ends the
+// run with what it is. Oracles: energy does not grow; nothing that is held gives way.
 
 #include <cmath>
 #include <string>
@@ -54,6 +55,30 @@ TEST(PassivePushOut, IsPaidOutOfWhatIsLostForGood) {
     grown = std::max(grown, energy - work);
   }
   EXPECT_LT(grown, of_newton * most);
+}
+
+TEST(PassivePushOut, WhatSupportsDriveOntoAToolIsNamed) {
+  const auto run = run_solids(
+      0.04, 1.0e-3,
+      {{.name = "driven",
+        .material = "neo_hookean: {youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1000.0}",
+        .integrator = "newmark: {step: 1.0e-3}",
+        .position = {0.0, 0.001},
+        .port = "skin",
+        .side = "boundary",
+        .more = "    constraints: {all: {on: boundary, x: \"0\", y: \"-0.1 * t\"}}\n",
+        .block = block_in(2, {0.1, 0.1}, {1, 1})},
+       {.name = "table",
+        .position = {-0.2, -0.02},
+        .port = "skin",
+        .side = "boundary",
+        .model = "rigid_tool",
+        .block = block_in(2, {0.4, 0.02}, {1, 1})}},
+      "", "contact: {everything: {}}\n");
+  EXPECT_FALSE(run->completed());
+  EXPECT_NE(run->end.reason.find("supports and tools drive 'driven' and 'table' onto each other"),
+            std::string::npos)
+      << run->end.reason;
 }
 
 }  // namespace
