@@ -47,6 +47,7 @@ void CompliantObstacle::begin(const TimeWindow& window, const Joint& joint, Bodi
   const bool looked = free_ahead() && see_look(joint, bodies);
   flies_ = !stands && !looked;
   looks_ = !stands && free_ahead() ? window.length() : 0.0;
+  expect_beyond(window);
   scale_.step = std::max(kinematic_grid_.step, iterate_.steps.step);
   scale_.velocity = usual_speed_ = measured_speed_ = joint.contact.closing_speed;
   swept_ = false;
@@ -60,6 +61,19 @@ bool CompliantObstacle::see_look(const Joint& joint, const Bodies& bodies) {
   if (look == nullptr) return false;
   flight_ = Eigen::Map<const Eigen::VectorXd>(look->u.data() + iterate_.width, iterate_.size());
   return true;
+}
+
+/// What the kernel leaves out is nearly what it left out in the window before, where that was as
+/// long. A window that is gone through again has the guess of its first time.
+void CompliantObstacle::expect_beyond(const TimeWindow& window) {
+  constexpr double as_long = 1.0e-9;
+  const bool again = window.begin == beyond_begin_;
+  const bool next = window.begin == beyond_end_ &&
+                    std::abs((beyond_end_ - beyond_begin_) / window.length() - 1.0) <= as_long;
+  if (!again) beyond_ = next && free_ahead() ? beyond_now_ : Eigen::VectorXd();
+  beyond_begin_ = window.begin;
+  beyond_end_ = window.end;
+  beyond_now_.resize(0);
 }
 
 /// What presses on the Neumann side when the window begins, as the window before left it.
@@ -131,6 +145,8 @@ void CompliantObstacle::find_kernel(double length, const Joint& joint, Bodies& b
 /// these suffice. False: none fits.
 bool CompliantObstacle::probe(double size, const Side& k, const Side& n, Bodies& bodies) {
   const int count = iterate_.steps.count;
+  beyond_.resize(0);
+  beyond_now_.resize(0);
   const std::size_t points = zone_.points().size() + 1;  // and one, as none stand for all
   const bool bands = bodies.describe(k.body).can.bands && !bodies.describe(n.body).quasi_static;
   answer_ = {};
@@ -178,6 +194,7 @@ void CompliantObstacle::see_flight(const Joint& joint, const Bodies& bodies) {
 void CompliantObstacle::predict(Eigen::Ref<Eigen::VectorXd> x) const {
   if (flight_.size() > 0) {
     x = flight_;
+    if (beyond_.size() == x.size()) x += beyond_;
     return;
   }
   for (int i = 1; i <= iterate_.steps.count; ++i) {
@@ -309,6 +326,7 @@ void CompliantObstacle::image(const Eigen::Ref<const Eigen::VectorXd>& x, const 
       fits_ = taken_;
       take_back(taken_, g);
       take_back_end(g);
+      if (leaves_out() && free_ahead() && flight_.size() == g.size()) beyond_now_ = g - flight_;
       moved_ -= g.tail(width);  // by the reaction: bodies at rest move by nothing else
       now = std::max(now, moved_.lpNorm<Eigen::Infinity>() / length);
     }
@@ -446,6 +464,10 @@ void CompliantObstacle::scales(Eigen::Ref<Eigen::VectorXd> s) const {
 void CompliantObstacle::state(Archive& archive) {
   zone_.state(archive);
   field(archive, "answer", answer_);
+  field(archive, "beyond", beyond_);
+  field(archive, "beyond_now", beyond_now_);
+  archive.field("beyond_begin", beyond_begin_);
+  archive.field("beyond_end", beyond_end_);
   if (archive.writing()) return;
   answer_told_ = false;
   eased_ = {};

@@ -52,6 +52,9 @@ class CompliantObstacle final : public Exchange {
   /// Whether the first guess is a flight: the Neumann side is advanced once, as `release` asks, and
   /// brought back, before the guess is made.
   bool flies() const { return flies_; }
+  /// The kernel is of near points alone: what forces move beyond them is in d, and takes a sweep
+  /// more.
+  bool leaves_out() const { return kernel_ != nullptr && !kernel_->band.empty(); }
   void release(const Joint& joint, Bodies& bodies);
   void see_flight(const Joint& joint, const Bodies& bodies);
   /// [N] the largest sum of forces on points in this sweep, and in windows before; 0: the joint is
@@ -79,6 +82,7 @@ class CompliantObstacle final : public Exchange {
   void find_kernel(double length, const Joint& joint, Bodies& bodies);
   [[nodiscard]] bool probe(double size, const Side& k, const Side& n, Bodies& bodies);
   void find_zone(double length, const Joint& joint, const Bodies& bodies);
+  void expect_beyond(const TimeWindow& window);
   /// Of the port: that of a list of its points which is number k; empty: all are listed.
   std::size_t value(const std::vector<std::int32_t>& points, std::size_t k) const;
   bool see_look(const Joint& joint, const Bodies& bodies);
@@ -127,6 +131,11 @@ class CompliantObstacle final : public Exchange {
   bool flies_ = false;
   double looks_ = 0.0;      // [s] by which the Neumann side looks on after the window
   Eigen::VectorXd flight_;  // [m] as the iterate; empty: none was flown
+  // [m] As the iterate, where the kernel leaves something out: what it left out of d - flight in
+  // the window before, as this one's guess, and in the last sweep; empty: nothing is known. Between
+  // [s] the ends of the window.
+  Eigen::VectorXd beyond_, beyond_now_;
+  double beyond_begin_ = 0.0, beyond_end_ = 0.0;
   Waveform given_;          // the obstacle of this sweep
   ReferenceScales scale_;
   bool swept_ = false;  // in this window

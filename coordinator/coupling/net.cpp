@@ -150,6 +150,11 @@ bool Net::contracts() const {
   return !known_.obstacles.empty() && known_.obstacles.size() + known_.ties.size() == count();
 }
 
+bool Net::leaves_out() const {
+  return std::ranges::any_of(known_.obstacles,
+                             [](const auto& entry) { return entry.exchange->leaves_out(); });
+}
+
 bool Net::projects() const {
   for (std::size_t i = 0; kernels_ && i < count(); ++i)
     if (exchange(i).projects()) return true;

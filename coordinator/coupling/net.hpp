@@ -71,6 +71,8 @@ class Net {
   bool contracts() const;
   /// The same, with ties.
   bool contact_beside_ties() const { return contracts() && !known_.ties.empty(); }
+  /// Some obstacle gives way by a kernel of near points alone.
+  bool leaves_out() const;
   /// Bodies have several of the joints.
   bool shares_bodies() const { return !island_->shared.empty(); }
   /// The inverse answers the last image exactly: points came into contact or left it.

@@ -25,8 +25,9 @@ Steps::Steps(Net& net, Accelerator& accelerator, const Options& options, Bodies&
       shared_(contracts_ && net.shares_bodies()),
       eased_(net.ease(bodies)) {
   accelerator_.reset(net.layout_key());
-  // Bodies that others hold answer a sweep with little of what they would if they were left alone.
-  if (shared_) accelerator_.doubt();
+  // Bodies that others hold answer a sweep with little of what they would if they were left alone;
+  // what a kernel of near points leaves out is nearly what it left out in the windows before.
+  if (shared_ || net_.leaves_out()) accelerator_.doubt();
 }
 
 bool Steps::enough(const Iterate& it) const {

@@ -473,19 +473,15 @@ const Vector* SurfaceContact::solve_rows(double time, const Vector& free, Compli
       make_rows();
       ++looks_;
     }
+    const bool again = look + 1 < looks_of_a_call && looks_ < most_looks;
     last_ = force_;
     many_ = false;
     if (!find_gaps(free)) {
       row_force_.setZero(gaps_.size());
-    } else if (many(give)) {
+    } else if (many(give) && find_many(give, again)) {
       many_ = true;
-      if (!find_many(give)) return nullptr;
-    } else {
-      if (!find_compliance(give)) return nullptr;
-      if (!find_forces()) {
-        tell_missing();
-        return nullptr;
-      }
+    } else if (!find_in_one_matrix(give)) {
+      return nullptr;
     }
     spread();
     const double change = (force_ - last_).lpNorm<Eigen::Infinity>();

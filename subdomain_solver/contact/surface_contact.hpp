@@ -56,12 +56,11 @@ class SurfaceContact final : public PortContact {
   void finish(std::size_t port, std::size_t partner, Reaction& reply) const;
   /// [J] by friction with all partners, since the run began.
   double dissipated() const;
-  /// [J] on this body and its partners, by overlap that grows.
   /// [J] on the body and its partners in the substep that was settled last, which nothing pressed
   /// on before, where they overlapped: bodies without inertia take at once what is drawn [M.137].
   /// Of each row's force the half, on the way by which its gap has closed.
   double taken_at_once() const;
-  double pressed_in() const { return interference_ ? interference_->work() : 0.0; }
+  double pressed_in() const { return interference_ ? interference_->work() : 0.0; }  // [J] overlap
   /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
   /// whether friction holds them.
   using SeeGap = std::function<void(std::size_t point, double gap, bool sticks)>;
@@ -119,10 +118,11 @@ class SurfaceContact final : public PortContact {
   [[nodiscard]] bool find_forces();
   void number_points();
   [[nodiscard]] bool many(Compliance& give);
+  [[nodiscard]] bool find_in_one_matrix(Compliance& give);
   void find_sides();
   [[nodiscard]] bool turn_near_rows();
   [[nodiscard]] bool find_opened(Compliance& give);
-  [[nodiscard]] bool find_many(Compliance& give);
+  [[nodiscard]] bool find_many(Compliance& give, bool again);
   void tell_missing();
   void guess_forces();
   void begin_slid(Meeting& m, const BoundaryData& boundary, const Substeps& grid);

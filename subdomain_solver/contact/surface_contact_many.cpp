@@ -14,14 +14,17 @@ namespace abut {
 
 namespace {
 
-/// Rows: the matrix of more of them on each other costs more than they do one after the other.
-constexpr std::size_t most_of_one_matrix = 500;
+/// Rows: the matrix of more of them on each other costs more than they do one after the other. What
+/// rubs has three numbers a row, and Newton's method in the place of active sets.
+constexpr std::size_t most_of_one_matrix = 500, most_that_rub = 60;
 /// Of the largest force: a pass that changes forces by less is rounding.
 constexpr double settled_pass = 1.0e-13;
 /// Of what the first pass of a round changes: the next round is as good.
 constexpr double next_round = 0.03;
 /// Components of unit vectors.
 constexpr double same_direction = 1.0e-3;
+/// Of what the first round of a look changes: rows of the next look are not settled either.
+constexpr double next_look = 1.0e-3;
 constexpr int most_passes = 20, most_rounds = 100;
 
 }  // namespace
@@ -44,9 +47,20 @@ void SurfaceContact::number_points() {
 
 /// Whether forces are found row by row: of many rows, on bodies that give way near forces alone.
 bool SurfaceContact::many(Compliance& give) {
-  if (rows_.size() <= most_of_one_matrix) return false;
+  if (rows_.size() <= (rubs_ ? most_that_rub : most_of_one_matrix)) return false;
   if (!near_give_.has_points()) number_points();
   return near_give_.find(give);
+}
+
+/// Few rows, and those that are not found one after the other though a matrix would hold them.
+bool SurfaceContact::find_in_one_matrix(Compliance& give) {
+  if (rows_.size() > most_of_one_matrix && many(give)) return false;
+  missing_.clear();
+  if (!row_force_.allFinite()) row_force_.resize(0);
+  if (!find_compliance(give)) return false;
+  if (find_forces()) return true;
+  tell_missing();
+  return false;
 }
 
 /// What the rows press on: this body, and the partners that give way.
@@ -110,24 +124,28 @@ bool SurfaceContact::turn_near_rows() {
     if (m.rows > 0)
       points.insert(points.end(), m.obstacle->rows().nodes.begin(), m.obstacle->rows().nodes.end());
   }
-  bool same = points == rows_of_near_ && directions_.size() == directions_of_near_.size();
+  bool same = points == rows_of_near_ && directions_.size() == directions_of_near_.size() &&
+              row_force_.size() == gaps_.size();
   const int dim = surfaces_.front().surface.geometry->dim;
   for (std::size_t r = 0; same && r < rows_.size(); ++r)
     for (int d = 0; d < dim; ++d) {
       const std::size_t at = index(rows_[r].first) * index(dim) + index(d);
       same = same && std::abs(directions_[at] - directions_of_near_[at]) <= same_direction;
     }
-  if (same && rubs_) turn(near_rows_, rows_, dim, directions_of_near_, directions_);
+  if (same && rubs_) turn(near_rows_, rows_, dim, directions_of_near_, directions_, row_force_);
   rows_of_near_ = std::move(points);
   directions_of_near_ = directions_;
   return same;
 }
 
-/// True: forces were found.
-bool SurfaceContact::find_many(Compliance& give) {
+/// True: forces were found, those that fit or, where rows are looked at again, nearly these.
+bool SurfaceContact::find_many(Compliance& give, bool again) {
   find_sides();
-  if (!turn_near_rows()) near_rows_ = near_rows(rows_, sides_);
-  if (row_force_.size() != gaps_.size()) guess_forces();
+  if (!turn_near_rows()) {
+    near_rows_ = near_rows(rows_, sides_);
+    guess_forces();
+  }
+  double change_of_look = 0.0;
   for (int round = 0; round < most_rounds; ++round) {
     if (!find_opened(give)) return false;
     double first = 0.0;
@@ -137,6 +155,8 @@ bool SurfaceContact::find_many(Compliance& give) {
       if (pass == 0) first = change;
       if (change <= next_round * first) break;
     }
+    if (round == 0) change_of_look = first;
+    if (again && first <= next_look * change_of_look) return true;
     if (first <= settled_pass * row_force_.lpNorm<Eigen::Infinity>()) return true;
   }
   missing_ = fmt::format(

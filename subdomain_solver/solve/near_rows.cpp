@@ -30,9 +30,9 @@ struct Motions {
   std::vector<double> moved;          // [m/N] (reached, dim, dim) as blocks of a kernel
 
   explicit Motions(const PressedSide& side) {
-    const std::size_t dim = index(side.dim), each = dim * dim;
+    const std::size_t dim = index(side.dim);
     const KernelBand& band = side.near->band;
-    std::vector<double> block(each);
+    std::vector<double> sizes;
     offsets.assign(1, 0);
     for (std::size_t p = 0; p < side.points; ++p) {
       const std::size_t count = band.empty() ? side.points : band.of(p).size();
@@ -41,17 +41,15 @@ struct Motions {
         return band.empty() ? side.moved.data() + ((p * dim + j) * side.points + e) * dim
                             : side.moved.data() + ((index(band.offsets[p]) + e) * dim + j) * dim;
       };
-      const auto size = [&](std::size_t e) {
-        double most = 0.0;
-        for (std::size_t j = 0; j < dim; ++j)
-          most = std::max(most, largest_entry(at(e, j), static_cast<int>(dim)));
-        return most;
-      };
       double own = 0.0;
-      for (std::size_t e = 0; e < count; ++e)
-        if (point(e) == p) own = size(e);
+      sizes.assign(count, 0.0);
       for (std::size_t e = 0; e < count; ++e) {
-        if (size(e) < least_motion * own || own == 0.0) continue;
+        for (std::size_t j = 0; j < dim; ++j)
+          sizes[e] = std::max(sizes[e], largest_entry(at(e, j), static_cast<int>(dim)));
+        if (point(e) == p) own = sizes[e];
+      }
+      for (std::size_t e = 0; e < count; ++e) {
+        if (sizes[e] < least_motion * own || own == 0.0) continue;
         reached.push_back(static_cast<std::int32_t>(point(e)));
         for (std::size_t j = 0; j < dim; ++j) moved.insert(moved.end(), at(e, j), at(e, j) + dim);
       }
@@ -60,59 +58,64 @@ struct Motions {
   }
 };
 
-/// A side while rows are gone through: rows by point, and what one row moves.
+/// A side while rows are gone through: what a row's components move along at a point, by rows and
+/// by points, and what one row moves. `Parts`: the most that a row has.
+template <int Dim, int Parts>
 class SideAnswer {
  public:
+  using Motion = Eigen::Matrix<double, Dim, Parts>;
+
   SideAnswer(const PressedSide& side, std::span<const FrictionRow> rows)
-      : side_(side), dim_(index(side.dim)), motions_(side), mark_(side.points, 0) {
-    moved_.assign(3 * side.points * dim_, 0.0);
-    std::vector<std::int32_t> last(side.points, -1);
-    const auto each = [&](const auto& see) {  // rows with a term at a point, each once
-      std::ranges::fill(last, -1);
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        if (!has(rows[r])) continue;
-        for (int p = 0; p < rows[r].parts; ++p)
-          for (const PressedSide::Term& term : terms(rows[r], p)) {
-            const std::size_t point = index(term.value) / dim_;
-            if (std::exchange(last[point], static_cast<std::int32_t>(r)) !=
-                static_cast<std::int32_t>(r))
-              see(point, static_cast<std::int32_t>(r));
+      : side_(side), motions_(side), moved_(side.points), mark_(side.points, 0) {
+    begins_.assign(1, 0);
+    std::vector<std::size_t> entry(side.points, 0);
+    first_.assign(side.points + 1, 0);
+    for (const FrictionRow& row : rows) {
+      for (int p = 0; has(row) && p < row.parts; ++p)
+        for (const PressedSide::Term& term : terms(row, p)) {
+          const std::size_t point = index(term.value / Dim);
+          if (entry[point] <= begins_.back()) {  // the row's first term there
+            along_.push_back({static_cast<std::int32_t>(point), Motion::Zero()});
+            entry[point] = along_.size();
+            ++first_[point + 1];
           }
-      }
-    };
-    first_row_.assign(side.points + 1, 0);
-    each([this](std::size_t point, std::int32_t) { ++first_row_[point + 1]; });
-    for (std::size_t p = 0; p < side.points; ++p) first_row_[p + 1] += first_row_[p];
-    rows_at_.resize(first_row_.back());
-    std::vector<std::size_t> next(first_row_.begin(), first_row_.end() - 1);
-    each([&](std::size_t point, std::int32_t row) { rows_at_[next[point]++] = row; });
+          along_[entry[point] - 1].factors(term.value % Dim, p) += term.factor;
+        }
+      begins_.push_back(along_.size());
+    }
+    for (std::size_t p = 0; p < side.points; ++p) first_[p + 1] += first_[p];
+    at_points_.resize(along_.size());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t k = begins_[r]; k < begins_[r + 1]; ++k)
+        at_points_[next[index(along_[k].point)]++] = {static_cast<std::int32_t>(r),
+                                                      static_cast<std::int32_t>(k)};
   }
 
-  /// The row presses: calls `see` with rows that feel it, more than once or not.
+  /// A row presses: calls `see` with rows that feel it and what opens them, (Parts, Parts), more
+  /// than once for a row or not.
   template <class See>
-  void press(const FrictionRow& row, const See& see) {
-    for (const std::int32_t q : reached_) mark_[index(q)] = 0;
+  void press(std::size_t r, const See& see) {
     reached_.clear();
-    if (!has(row)) return;
-    for (int p = 0; p < row.parts; ++p)
-      for (const PressedSide::Term& term : terms(row, p)) move(index(p), index(row.parts), term);
-    for (const std::int32_t q : reached_)
-      for (std::size_t k = first_row_[index(q)]; k < first_row_[index(q) + 1]; ++k)
-        see(rows_at_[k]);
-  }
-
-  /// Adds what opens a row, as (parts of it, parts of the one that presses).
-  void add(const FrictionRow& row, int parts, double* block) const {
-    if (!has(row)) return;
-    for (int i = 0; i < row.parts; ++i)
-      for (const PressedSide::Term& term : terms(row, i)) {
-        if (mark_[index(term.value) / dim_] == 0) continue;
-        for (int j = 0; j < parts; ++j)
-          block[j * row.parts + i] += term.factor * moved_[at(index(j), index(term.value))];
-      }
+    for (std::size_t k = begins_[r]; k < begins_[r + 1]; ++k) move(along_[k]);
+    for (const std::int32_t q : reached_) {
+      mark_[index(q)] = 0;
+      for (std::size_t k = first_[index(q)]; k < first_[index(q) + 1]; ++k)
+        see(at_points_[k].row,
+            along_[index(at_points_[k].entry)].factors.transpose() * moved_[index(q)]);
+    }
   }
 
  private:
+  struct Along {
+    std::int32_t point;
+    Motion factors;
+  };
+  struct AtPoint {
+    std::int32_t row, entry;
+  };
+  using Block = Eigen::Map<const Eigen::Matrix<double, Dim, Dim>>;
+
   bool has(const FrictionRow& row) const {
     return row.first >= side_.first &&
            row.first < side_.first + static_cast<Eigen::Index>(side_.components());
@@ -120,44 +123,85 @@ class SideAnswer {
   std::span<const PressedSide::Term> terms(const FrictionRow& row, int part) const {
     return side_.of(index(row.first - side_.first + part));
   }
-  std::size_t at(std::size_t part, std::size_t value) const {
-    return part * side_.points * dim_ + value;
-  }
-  void move(std::size_t part, std::size_t parts, const PressedSide::Term& term) {
-    const std::size_t point = index(term.value) / dim_, along = index(term.value) % dim_;
-    for (std::size_t e = motions_.offsets[point]; e < motions_.offsets[point + 1]; ++e) {
+  void move(const Along& by) {
+    for (std::size_t e = motions_.offsets[index(by.point)];
+         e < motions_.offsets[index(by.point) + 1]; ++e) {
       const std::size_t q = index(motions_.reached[e]);
-      if (mark_[q] == 0) {
-        mark_[q] = 1;
+      const Block block(motions_.moved.data() + e * Dim * Dim);
+      if (std::exchange(mark_[q], 1) == 0) {
         reached_.push_back(motions_.reached[e]);
-        for (std::size_t p = 0; p < parts; ++p)
-          for (std::size_t i = 0; i < dim_; ++i) moved_[at(p, q * dim_ + i)] = 0.0;
+        moved_[q].noalias() = block * by.factors;
+      } else {
+        moved_[q].noalias() += block * by.factors;
       }
-      const double* moved = motions_.moved.data() + (e * dim_ + along) * dim_;
-      for (std::size_t i = 0; i < dim_; ++i)
-        moved_[at(part, q * dim_ + i)] += term.factor * moved[i];
     }
   }
 
   const PressedSide& side_;
-  std::size_t dim_;
   Motions motions_;
-  std::vector<std::size_t> first_row_;  // (points + 1)
-  std::vector<std::int32_t> rows_at_;   // by point
-  std::vector<char> mark_;              // (points) 1: reached
+  std::vector<Along> along_;
+  std::vector<std::size_t> begins_;  // (rows + 1) of a row's entries in along_
+  std::vector<std::size_t> first_;   // (points + 1) of a point's entries in at_points_
+  std::vector<AtPoint> at_points_;
+  std::vector<Motion> moved_;  // [m/N] (points)
+  std::vector<char> mark_;     // (points) 1: reached
   std::vector<std::int32_t> reached_;
-  std::vector<double> moved_;  // (parts, points, dim)
 };
 
 /// What soften_held adds to a row's tangents.
-double softness_of(const double* own, int parts) {
+template <class Square>
+double softness_of(const Square& a, int parts) {
   if (parts == 1) return 0.0;
-  const auto a = [own, parts](int i, int j) { return own[j * parts + i]; };
   double stiffest = a(1, 1);
   if (parts == 3)
     stiffest = 0.5 * (a(1, 1) + a(2, 2)) - std::hypot(0.5 * (a(1, 1) - a(2, 2)), a(1, 2));
   const double soft = least_tangent * a(0, 0);
   return stiffest >= soft ? 0.0 : soft;
+}
+
+template <int Dim, int Parts>
+NearBlocks blocks_of(std::span<const FrictionRow> rows, std::span<const PressedSide> sides) {
+  using Square = Eigen::Matrix<double, Parts, Parts>;
+  std::vector<SideAnswer<Dim, Parts>> answers;
+  for (const PressedSide& side : sides) answers.emplace_back(side, rows);
+  NearBlocks out;
+  out.offsets.assign(1, 0);
+  std::vector<std::int32_t> felt, seen(rows.size(), -1);
+  std::vector<Square> opened(rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const int parts = rows[r].parts;
+    const auto self = static_cast<std::int32_t>(r);
+    felt.assign(1, self);
+    seen[r] = self;
+    opened[r].setZero();
+    const auto feels = [&](std::int32_t row, const auto& block) {
+      if (std::exchange(seen[index(row)], self) != self) {
+        felt.push_back(row);
+        opened[index(row)].noalias() = block;
+      } else {
+        opened[index(row)].noalias() += block;
+      }
+    };
+    for (SideAnswer<Dim, Parts>& answer : answers) answer.press(r, feels);
+    const double least = least_block * opened[r].template lpNorm<Eigen::Infinity>();
+    std::ranges::sort(felt);
+    for (const std::int32_t s : felt) {
+      Square& block = opened[index(s)];
+      const bool itself = index(s) == r;
+      if (!itself && block.template lpNorm<Eigen::Infinity>() < least) continue;
+      if (itself) {
+        out.own.push_back(out.opened.size());
+        out.soft.push_back(softness_of(block, parts));
+        for (int p = 1; p < parts; ++p) block(p, p) += out.soft.back();
+      }
+      out.opened.push_back(s);
+      out.begins.push_back(out.blocks.size());
+      for (int j = 0; j < parts; ++j)
+        for (int i = 0; i < rows[index(s)].parts; ++i) out.blocks.push_back(block(i, j));
+    }
+    out.offsets.push_back(out.opened.size());
+  }
+  return out;
 }
 
 }  // namespace
@@ -180,50 +224,14 @@ void PressedSide::open(std::span<const double> by, Vector& opened) const {
 }
 
 NearBlocks near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides) {
-  std::vector<SideAnswer> answers;
-  for (const PressedSide& side : sides) answers.emplace_back(side, rows);
-  NearBlocks out;
-  out.offsets.assign(1, 0);
-  std::vector<std::int32_t> felt, seen(rows.size(), -1);
-  std::vector<double> block;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const int parts = rows[r].parts;
-    felt.clear();
-    const auto feels = [&](std::int32_t row) {
-      if (std::exchange(seen[index(row)], static_cast<std::int32_t>(r)) !=
-          static_cast<std::int32_t>(r))
-        felt.push_back(row);
-    };
-    feels(static_cast<std::int32_t>(r));
-    for (SideAnswer& answer : answers) answer.press(rows[r], feels);
-    std::ranges::sort(felt);
-    double least = 0.0;
-    const auto find = [&](std::int32_t s) {
-      block.assign(index(rows[index(s)].parts * parts), 0.0);
-      for (const SideAnswer& answer : answers) answer.add(rows[index(s)], parts, block.data());
-    };
-    find(static_cast<std::int32_t>(r));
-    least = least_block * largest_entry(block.data(), parts * parts);
-    for (const std::int32_t s : felt) {
-      find(s);
-      const bool itself = index(s) == r;
-      if (!itself && largest_entry(block.data(), static_cast<int>(block.size())) < least) continue;
-      if (itself) {
-        out.own.push_back(out.opened.size());
-        out.soft.push_back(softness_of(block.data(), parts));
-        for (int p = 1; p < parts; ++p) block[index(p * parts + p)] += out.soft.back();
-      }
-      out.opened.push_back(s);
-      out.begins.push_back(out.blocks.size());
-      out.blocks.insert(out.blocks.end(), block.begin(), block.end());
-    }
-    out.offsets.push_back(out.opened.size());
-  }
-  return out;
+  const bool rubs = std::ranges::any_of(rows, [](const FrictionRow& row) { return row.parts > 1; });
+  if (sides.front().dim == 2)
+    return rubs ? blocks_of<2, 2>(rows, sides) : blocks_of<2, 1>(rows, sides);
+  return rubs ? blocks_of<3, 3>(rows, sides) : blocks_of<3, 1>(rows, sides);
 }
 
 void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
-          std::span<const double> before, std::span<const double> now) {
+          std::span<const double> before, std::span<const double> now, Vector& force) {
   using Axes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
   std::vector<Axes> turns;
   for (const FrictionRow& row : rows) {
@@ -232,7 +240,10 @@ void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
         next(now.data() + at, dim, row.parts);
     turns.emplace_back(row.parts == 1 ? Axes(Axes::Identity(1, 1)) : Axes(next.transpose() * old));
   }
-  for (std::size_t r = 0; r < rows.size(); ++r)
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Vector turned_force = turns[r] * force.segment(rows[r].first, rows[r].parts);
+    force.segment(rows[r].first, rows[r].parts) = turned_force;
+    force(rows[r].first) = std::max(0.0, turned_force(0));
     for (std::size_t k = near.offsets[r]; k < near.offsets[r + 1]; ++k) {
       const std::size_t s = index(near.opened[k]);
       Eigen::Map<Eigen::MatrixXd> block(near.blocks.data() + near.begins[k], rows[s].parts,
@@ -240,7 +251,26 @@ void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
       const Axes turned = turns[s] * block * turns[r].transpose();
       block = turned;
     }
+  }
 }
+
+namespace {
+
+/// rates += block moved, of `to` parts by `by` parts. Sizes that are known make one that rubs a
+/// third of the work.
+void follow(const double* block, int to, int by, const double* moved, double* rates) {
+  if (to == 1 && by == 1) {
+    rates[0] += block[0] * moved[0];
+  } else if (to == 3 && by == 3) {
+    for (int i = 0; i < 3; ++i)
+      rates[i] += block[i] * moved[0] + block[3 + i] * moved[1] + block[6 + i] * moved[2];
+  } else {
+    for (int j = 0; j < by; ++j)
+      for (int i = 0; i < to; ++i) rates[i] += block[j * to + i] * moved[j];
+  }
+}
+
+}  // namespace
 
 double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& rates,
              Vector& force) {
@@ -268,10 +298,7 @@ double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& 
     change = std::max(change, most);
     for (std::size_t k = near.offsets[r]; k < near.offsets[r + 1]; ++k) {
       const FrictionRow& to = rows[index(near.opened[k])];
-      const double* block = near.blocks.data() + near.begins[k];
-      for (Eigen::Index j = 0; j < parts; ++j)
-        for (Eigen::Index i = 0; i < to.parts; ++i)
-          rates(to.first + i) += block[j * to.parts + i] * moved[j];
+      follow(near.blocks.data() + near.begins[k], to.parts, row.parts, moved, &rates(to.first));
     }
   }
   return change;

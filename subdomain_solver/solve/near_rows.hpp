@@ -50,9 +50,10 @@ struct NearBlocks {
 NearBlocks near_rows(std::span<const FrictionRow> rows, std::span<const PressedSide> sides);
 
 /// The same rows along other directions (components, dim) that span what those before did: where a
-/// row rubs, any; where it does not, nearly the same normal.
+/// row rubs, any; where it does not, nearly the same normal. `force` [N] (components) turns with
+/// them, and presses at least by nothing.
 void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
-          std::span<const double> before, std::span<const double> now);
+          std::span<const double> before, std::span<const double> now, Vector& force);
 
 /// One row after the other to the force [N] that fits its own rates (Gauss and Seidel). `rates`:
 /// [m] (components) gaps and slips under `force`; both follow. Returns the largest change of a

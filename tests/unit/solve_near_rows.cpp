@@ -150,8 +150,9 @@ TEST(NearRows, BlocksAreThoseOfTheDenseMatrix) {
   }
 }
 
-// Goal: near rows along turned tangents are those that are made for these. Oracle: near_rows; a
-// turn is two products with directions of length 1, so that rounding is all that parts them.
+// Goal: near rows along turned tangents are those that are made for these, and forces turn with
+// them: what they press on points stays. Oracle: near_rows, PressedSide::press; a turn is two
+// products with directions of length 1, so that rounding is all that parts them.
 TEST(NearRows, TurnWithTheirTangents) {
   std::mt19937 random(5);
   const Square k(6, 2, 0.15, random), n(5, 2, 0.2, random);
@@ -176,7 +177,15 @@ TEST(NearRows, TurnWithTheirTangents) {
     for (std::size_t p = 0; p < 3; ++p)
       for (const PressedSide::Term& term : own.of(3 * r + p)) now.push_back(term.factor);
   }
-  turn(near, problem.rows, 3, before, now);
+  const Vector pressed = Vector::LinSpaced(problem.gaps.size(), 1.0, 2.0);
+  Vector force = pressed;
+  turn(near, problem.rows, 3, before, now, force);
+  std::vector<double> on(3 * problem.sides.front().points), then(on.size());
+  PressedSide was = problem.sides.front();
+  for (std::size_t t = 0; t < was.terms.size(); ++t) was.terms[t].factor = before[t];
+  was.press(pressed, on);
+  problem.sides.front().press(force, then);
+  for (std::size_t v = 0; v < on.size(); ++v) EXPECT_NEAR(on[v], then[v], roundoff(2.0, 27.0));
   const NearBlocks made = near_rows(problem.rows, problem.sides);
   for (std::size_t r = 0; r < problem.rows.size(); ++r) {
     const double* one = near.blocks.data() + near.begins[near.own[r]];
