@@ -54,7 +54,8 @@ package: build
 	@cd build/$(PRESET) && cpack >package.log || { cat package.log; exit 1; }
 	@ls build/$(PRESET)/packages/*.deb
 
-demo: build
+demo: dependencies-build
+	@sh scripts/build.sh demo
 	$(BIN)/abut run configs/two_bars.yaml --out runs/two_bars --force --set output.fields.every=1
 	@$(BIN)/abut report runs/two_bars >/dev/null
 	@echo "page   file://$(CURDIR)/runs/two_bars/report.html"

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Configures a preset when needed and builds some of it.
-#   usage: scripts/build.sh programs|tests|bench
+#   usage: scripts/build.sh demo|programs|tests|bench
+#   demo: the two programs; programs: also what is installed with them
 #   environment: PRESET (release), JOBS (all cores), WITH (optional libraries by name; none)
 # A build directory that was made with other libraries than WITH names is configured again.
 # The build directory starts with the programs alone, so that a demo needs neither GoogleTest nor
@@ -35,6 +36,7 @@ made_with() {  # is this what WITH named when the build directory was configured
 made_with || configure
 
 case "${1:-}" in
+  demo) target="abut abut-solver" ;;
   programs) target=programs ;;
   tests)
     has ABUT_TESTS || configure -DABUT_TESTS=ON
@@ -43,7 +45,7 @@ case "${1:-}" in
     has ABUT_BENCH || configure -DABUT_BENCH=ON
     target="programs benchmarks" ;;
   *)
-    echo "usage: $0 programs|tests|bench" >&2
+    echo "usage: $0 demo|programs|tests|bench" >&2
     exit 2 ;;
 esac
 

@@ -104,39 +104,62 @@ bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
   return true;
 }
 
-/// Whether the moduli at a point are below a limit times the metric of its cell. Called: it is the
-/// same for all cells of a dimension.
+/// A law that is asked whether its moduli at a point are below a limit times the metric of the
+/// point's cell. Called, not inlined: what surrounds it is the same for all laws of a cell.
+template <int dim>
+class Asked {
+ public:
+  using Real = Lanes<ABUT_LANES>::Real;
+
+  virtual void begin(int batch, int slice) = 0;
+  virtual void keep_slower(int place, const TensorLanes<ABUT_LANES>& h, const Real& limit,
+                           const Real (&metric)[dim][dim],
+                           Lanes<ABUT_LANES>::Bits& below) const = 0;
+
+ protected:
+  ~Asked() = default;
+};
+
 template <int dim, class Tangent>
-[[gnu::noinline]] void keep_slower(const Tangent& tangent, int place,
-                                   const TensorLanes<ABUT_LANES>& h,
-                                   const Lanes<ABUT_LANES>::Real& limit,
-                                   const Lanes<ABUT_LANES>::Real (&metric)[dim][dim],
-                                   Lanes<ABUT_LANES>::Bits& below) {
-  ElasticityLanes<ABUT_LANES> moduli;
-  Lanes<ABUT_LANES>::Real valid, scaled[dim][dim];
-  tangent(place, h, moduli, valid);
-  below &= valid > 0.0;
-  ABUT_UNROLLED (j, 0, dim)
-    ABUT_UNROLLED (l, 0, dim) scaled[j][l] = limit * metric[j][l];
-  MetricTest<dim, ABUT_LANES>::run(scaled, moduli, below);
-}
+class AskedLaw final : public Asked<dim> {
+ public:
+  using typename Asked<dim>::Real;
+
+  AskedLaw(const PatchView& patch, const BatchedParameters& parameters)
+      : tangent_(patch, parameters) {}
+
+  void begin(int batch, int slice) override { tangent_.begin(batch, slice); }
+  void keep_slower(int place, const TensorLanes<ABUT_LANES>& h, const Real& limit,
+                   const Real (&metric)[dim][dim], Lanes<ABUT_LANES>::Bits& below) const override {
+    ElasticityLanes<ABUT_LANES> moduli;
+    Real valid, scaled[dim][dim];
+    tangent_(place, h, moduli, valid);
+    below &= valid > 0.0;
+    ABUT_UNROLLED (j, 0, dim)
+      ABUT_UNROLLED (l, 0, dim) scaled[j][l] = limit * metric[j][l];
+    MetricTest<dim, ABUT_LANES>::run(scaled, moduli, below);
+  }
+
+ private:
+  Tangent tangent_;
+};
 
 /// Cells of a batch (x, u: nodal values) that are slower than a limit, one bit each.
-template <class Points, class Tangent>
+template <class Points>
 unsigned slower_cells(const double* x, const double* u, const double* scale, double square,
-                      int batch, Tangent& tangent) {
+                      int batch, Asked<Points::dim>& law) {
   constexpr int lanes = ABUT_LANES, dim = Points::dim;
   using Real = Lanes<lanes>::Real;
   using Bits = Lanes<lanes>::Bits;
   unsigned slower = 0;
   for (int slice = 0; slice < batch_lanes; slice += lanes) {
     const Real limit = load<lanes>(scale + slice) * square;
-    tangent.begin(batch, slice);
+    law.begin(batch, slice);
     Bits below = ~Bits{};
     Real metric[dim][dim];
     Points::template run<lanes>(x + slice, u + slice, metric,
                                 [&](int place, const TensorLanes<lanes>& h) ABUT_INLINED {
-                                  keep_slower(tangent, place, h, limit, metric, below);
+                                  law.keep_slower(place, h, limit, metric, below);
                                 });
     ABUT_UNROLLED (l, 0, lanes)
       if (below[l] != 0) slower |= 1u << (slice + l);
@@ -144,13 +167,12 @@ unsigned slower_cells(const double* x, const double* u, const double* scale, dou
   return slower;
 }
 
-template <class Points, class Tangent>
-void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
-               FrequencyQuestion& question) {
+template <class Points>
+[[gnu::noinline]] void ask_cells(const PatchView& patch, FrequencyQuestion& question,
+                                 Asked<Points::dim>& law) {
   constexpr int size = Points::nodes * 3 * batch_lanes;
   constexpr double most = 1.0e12;  // rises of the limit, for cells without an answer
   alignas(64) double x[size], u[size];
-  Tangent tangent(patch, parameters);
   const double end = question.square * most;
   for (int b = 0; b < patch.batches; ++b) {
     const std::int32_t* list = patch.nodes + b * Points::nodes * batch_lanes;
@@ -160,7 +182,7 @@ void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
     const unsigned all = rest < batch_lanes ? (1u << rest) - 1 : (1u << batch_lanes) - 1;
     unsigned fast = 0;
     for (;;) {
-      fast = all & ~slower_cells<Points>(x, u, question.scale + first, question.square, b, tangent);
+      fast = all & ~slower_cells<Points>(x, u, question.scale + first, question.square, b, law);
       if (fast == 0 || question.fast != nullptr) break;
       question.square *= 1.01;
       if (question.square < end) continue;
@@ -170,6 +192,13 @@ void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
     for (int l = 0; l < batch_lanes; ++l)
       if ((fast >> l & 1u) != 0) question.fast[question.found++] = first + l;
   }
+}
+
+template <class Points, class Tangent>
+void ask_patch(const PatchView& patch, const BatchedParameters& parameters,
+               FrequencyQuestion& question) {
+  AskedLaw<Points::dim, Tangent> law(patch, parameters);
+  ask_cells<Points>(patch, question, law);
 }
 
 constexpr int laws = static_cast<int>(BatchedLaw::count);

@@ -3,9 +3,14 @@
 #include <cstring>
 
 /// Loop over first <= i < end that becomes straight code: only then do the entries of small arrays
-/// of lanes live in registers.
+/// of lanes live in registers. ABUT_LOOPS_STAY: it remains a loop, for code that calls a library
+/// for each sum anyway.
+#ifdef ABUT_LOOPS_STAY
+#define ABUT_UNROLLED(i, first, end) for (int i = (first); i < static_cast<int>(end); ++i)
+#else
 #define ABUT_UNROLLED(i, first, end) \
   _Pragma("GCC unroll 16") for (int i = (first); i < static_cast<int>(end); ++i)
+#endif
 
 /// Behind the parameters of a lambda over lanes: it becomes part of the kernel that calls it.
 #define ABUT_INLINED __attribute__((always_inline))

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/dense.hpp"
 #include "subdomain_solver/time/motion_views.hpp"
 
 namespace abut {
@@ -38,8 +37,7 @@ Eigen::Quaterniond nearest_turn(const Matrix3d& sum, int dim) {
   Eigen::Matrix4d horn;
   horn << sum.trace(), twist.transpose(), twist,
       Matrix3d(sum + sum.transpose() - sum.trace() * Matrix3d::Identity());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(horn);
-  Eigen::Vector4d best = eigen.eigenvectors().col(3);
+  Eigen::Vector4d best = symmetric_eigen(horn).vectors.col(3);
   if (best(0) < 0.0) best = -best;
   return Eigen::Quaterniond(best(0), best(1), best(2), best(3)).normalized();
 }
