@@ -21,7 +21,7 @@ bool is_plain(std::string_view text, const std::string& marks) {
 
 bool is_path(std::string_view text) {
   return text.starts_with('/') &&
-         text.find_first_not_of(std::string(letters) + "/._+-") == text.npos;
+         text.find_first_not_of(std::string(letters).append("/._+-")) == text.npos;
 }
 
 }  // namespace

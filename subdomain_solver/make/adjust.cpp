@@ -29,7 +29,7 @@ constexpr double margin = 1.0e-10;
 constexpr int most_passes = 50;
 constexpr int most_sweeps = 2000;
 
-constexpr const char* key = "initial.adjust";
+constexpr const char* adjust_key = "initial.adjust";
 
 /// A shape alone, as ports show it: nothing asks for stiffness or mass.
 PortGeometry surface_of(const SolidShapeSpec& shape, const Mesh& mesh, const std::string& side) {
@@ -49,7 +49,7 @@ bool is_sound(const PortGeometry& surface) {
 }
 
 /// A contact of the body that is adjusted.
-struct Meeting {
+struct PortMeeting {
   std::string interface;
   bool own_rows = true;             // contact will have rows of the body's nodes
   bool points = false;              // ... of single ones
@@ -96,9 +96,9 @@ class Adjuster {
   std::optional<Mesh> partner_mesh(const PortPartner& contact, const BodySpec& partner) const;
   void choose_gaps();
   double open_overlaps(bool closing);
-  void add(const Meeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
+  void add(const PortMeeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
            AdjustRows& out) const;
-  void add_rows(const Meeting& m, bool closing, AdjustRows& out) const;
+  void add_rows(const PortMeeting& m, bool closing, AdjustRows& out) const;
   void pose();
   void check_cells() const;
   double moved(std::int32_t node) const;
@@ -108,7 +108,7 @@ class Adjuster {
   Mesh& mesh_;
   std::vector<double> begin_;             // [m] (nodes, dim) of the mesh as it was
   std::map<std::int32_t, Matrix3> free_;  // onto the directions in which a held node may go
-  std::vector<Meeting> meetings_;
+  std::vector<PortMeeting> meetings_;
   AdjustRows rows_;  // of the last pass
 };
 
@@ -146,16 +146,16 @@ void Adjuster::meet(const std::string& port, const std::string& side) {
       throw InputError(fmt::format("moves nodes onto the surface of {}, which only its own program "
                                    "knows",
                                    contact.body),
-                       place_.where(key), "Move the body with initial.position instead.");
+                       place_.where(adjust_key), "Move the body with initial.position instead.");
     const std::optional<BodySpec> partner = read_partner(contact, place_.document);
     if (!partner) continue;  // told of the partner itself
     if (partner->initial.adjust)
       throw InputError(fmt::format("is true of both sides of the interface {}", contact.interface),
-                       place_.where(key), "Let one of them stay where it is.");
+                       place_.where(adjust_key), "Let one of them stay where it is.");
     if (partner->shape() == nullptr || partner->shape()->dimension != mesh_.dim) continue;
     const std::optional<Mesh> mesh = partner_mesh(contact, *partner);
     if (!mesh || !mesh_.sides.contains(side)) continue;
-    Meeting m;
+    PortMeeting m;
     m.interface = contact.interface;
     m.nodes = mesh_.nodes_of(side);
     m.closes.assign(m.nodes.size(), 0);
@@ -175,14 +175,14 @@ void Adjuster::meet(const std::string& port, const std::string& side) {
 /// The surfaces to where the mesh has gone.
 void Adjuster::pose() {
   const std::size_t dim = index(mesh_.dim);
-  for (Meeting& m : meetings_)
+  for (PortMeeting& m : meetings_)
     for (std::size_t a = 0; a < m.nodes.size(); ++a)
       for (std::size_t i = 0; i < dim; ++i)
         m.own.points[a * dim + i] = mesh_.points[index(m.nodes[a]) * dim + i];
 }
 
 /// Rows in terms of the body's coordinates; `as_partner`: its surface is the one that they see.
-void Adjuster::add(const Meeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
+void Adjuster::add(const PortMeeting& m, const SurfaceRows& rows, bool as_partner, double allowed,
                    AdjustRows& out) const {
   const SparseRows& own = as_partner ? rows.n : rows.k;
   for (int r = 0; r < rows.count(); ++r) {
@@ -209,7 +209,7 @@ void Adjuster::add(const Meeting& m, const SurfaceRows& rows, bool as_partner, d
 
 /// All rows in which the sides of a contact must not overlap; while gaps are closed, those of the
 /// body's own nodes.
-void Adjuster::add_rows(const Meeting& m, bool closing, AdjustRows& out) const {
+void Adjuster::add_rows(const PortMeeting& m, bool closing, AdjustRows& out) const {
   const StartSurface own = m.one(), partner = m.other();
   if (closing) {
     const std::size_t first = out.gaps.size();
@@ -233,7 +233,7 @@ void Adjuster::add_rows(const Meeting& m, bool closing, AdjustRows& out) const {
 
 /// Which nodes are before a partner and no farther from it than adjust_gaps.
 void Adjuster::choose_gaps() {
-  for (Meeting& m : meetings_) {
+  for (PortMeeting& m : meetings_) {
     if (spec_.initial.adjust_gaps > m.own.spacing)
       throw InputError(fmt::format("is {:g} m, more than the facets of the body at the interface "
                                    "{}, {:.3g} m",
@@ -252,7 +252,7 @@ double Adjuster::open_overlaps(bool closing) {
   rows_ = {};
   rows_.rows.clear();
   double smallest = std::numeric_limits<double>::infinity(), extent = 0.0;
-  for (const Meeting& m : meetings_) {
+  for (const PortMeeting& m : meetings_) {
     add_rows(m, closing, rows_);
     smallest = std::min(smallest, facet_size(m.one(), m.other()));
   }
@@ -287,7 +287,7 @@ void Adjuster::check_cells() const {
       most = std::max(most, moved(node));
     throw InputError(fmt::format("moves nodes by up to {:.3g} m, and then the mesh {}", most,
                                  error.what_is_wrong),
-                     place_.where(key),
+                     place_.where(adjust_key),
                      "Move the body with initial.position until less is left to adjust, or make "
                      "its cells larger.");
   }
@@ -302,7 +302,7 @@ std::string Adjuster::run() {
   if (rows_.overlap > 0.0) {
     throw InputError(fmt::format("leaves an overlap of {:.3g} m at the interface {}", rows_.overlap,
                                  rows_.interface),
-                     place_.where(key),
+                     place_.where(adjust_key),
                      "Move a body with initial.position until they are apart, and do not hold "
                      "nodes that overlap.");
   }
@@ -331,7 +331,8 @@ std::string adjust_ports(const BodySpec& spec, const Place& place,
   }
   if (!touched)
     throw InputError("has no effect: no interface lets the body touch another one",
-                     place.where(key), "Leave it out, or declare the contact under interfaces.");
+                     place.where(adjust_key),
+                     "Leave it out, or declare the contact under interfaces.");
   return adjuster.run();
 }
 
