@@ -135,8 +135,9 @@ bool is_of_meshes(const TieLayout::Member& member, const Eigen::VectorXd& left, 
 bool is_of_steps(const TieLayout::Member& member, double seen, double tolerance,
                  const Bodies& bodies) {
   constexpr double most = 100.0;  // tolerances
-  const auto step = [&](std::size_t s) { return bodies.describe(member.joint->sides[s].body).step; };
-  return step(0) != step(1) && seen <= most * tolerance;
+  const std::array<Side, 2>& sides = member.joint->sides;
+  return bodies.describe(sides[0].body).step != bodies.describe(sides[1].body).step &&
+         seen <= most * tolerance;
 }
 
 void add_once(const std::string& name, std::vector<std::string>& names) {

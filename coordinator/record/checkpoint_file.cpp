@@ -28,7 +28,15 @@ namespace fs = std::filesystem;
 constexpr std::string_view heading = "abut checkpoint, form 1\n";
 constexpr const char* start_again = "Run the scene again.";
 
-/// A file that is being written, and goes away where it is not finished.
+void rename_file(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error)
+    throw RunError(fmt::format("cannot be renamed to {}: {}", to.string(), error.message()),
+                   from.string(), "Check that nothing else uses the run's folder.");
+}
+
+/// A file that is being written, and goes away where it does not come to its name.
 class NewFile {
  public:
   explicit NewFile(fs::path path) : path_(std::move(path)) {
@@ -39,7 +47,7 @@ class NewFile {
   }
   ~NewFile() {
     if (descriptor_ >= 0) close(descriptor_);
-    if (descriptor_ >= 0) unlink(path_.c_str());
+    if (!named_) unlink(path_.c_str());
   }
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -56,6 +64,11 @@ class NewFile {
     if (fsync(descriptor_) != 0) fail("written");
     if (close(std::exchange(descriptor_, -1)) != 0) fail("written");
   }
+  /// Of a file that is finished, in the same folder.
+  void name(const fs::path& path) {
+    rename_file(path_, path);
+    named_ = true;
+  }
 
  private:
   [[noreturn]] void fail(const char* doing) const {
@@ -65,15 +78,8 @@ class NewFile {
   }
   fs::path path_;
   int descriptor_ = -1;
+  bool named_ = false;
 };
-
-void rename_file(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error)
-    throw RunError(fmt::format("cannot be renamed to {}: {}", to.string(), error.message()),
-                   from.string(), "Check that nothing else uses the run's folder.");
-}
 
 /// Names in a directory are on the disk as well.
 void settle(const fs::path& directory) {
@@ -139,15 +145,13 @@ void write_checkpoint(const fs::path& directory, Checkpoint& checkpoint) {
   archive.finish();
   const std::uint64_t sum = hash_bytes(bytes);
   const fs::path latest = directory / latest_checkpoint;
-  {
-    NewFile file(directory / unfinished_checkpoint);
-    file.write(heading);
-    file.write(as_text(sum));
-    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    file.finish();
-  }
+  NewFile file(directory / unfinished_checkpoint);
+  file.write(heading);
+  file.write(as_text(sum));
+  file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.finish();
   if (is_file(latest)) rename_file(latest, directory / earlier_checkpoint);
-  rename_file(directory / unfinished_checkpoint, latest);
+  file.name(latest);
   settle(directory);
 }
 

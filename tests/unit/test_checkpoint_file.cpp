@@ -80,6 +80,12 @@ TEST_F(CheckpointFiles, OverwriteWhatAKilledRunLeftUnfinishedAndFollowNoLink) {
 }
 
 /// Of a file that any byte of was changed, or that was cut anywhere, nothing is used.
+TEST_F(CheckpointFiles, LeaveNothingBehindWhereTheirNameIsTaken) {
+  fs::create_directory(latest);
+  EXPECT_THROW(write(1.0), RunError);
+  EXPECT_FALSE(fs::exists(folder / unfinished_checkpoint));
+}
+
 TEST_F(CheckpointFiles, AreRefusedWhereAByteIsAnother) {
   write(1.0);
   const std::string whole = bytes_of(latest);
