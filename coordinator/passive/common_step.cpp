@@ -122,7 +122,6 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   step_.end = end;
   rows_.clear();
   points_.clear();
-  velocities_.clear();
   prepared_ = 0;
   softer_ = 0;
   released_ = 0.0;
@@ -148,7 +147,8 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
 }
 
 std::string CommonStep::driven() const {
-  if (velocities_.empty()) return {};  // a body had no answer at all
+  // They may be those of the last trial to which all bodies had an answer; or there was none.
+  if (velocities_.size() != from_.size()) return {};
   const auto moves = [this](const DistanceRow& row) {
     for (std::size_t i = 0; i < 4; ++i) {
       const std::int32_t point = row.features.points[i];
