@@ -22,8 +22,8 @@ Outcome Body::Passive::finish(PassiveReply& reply) {
   ABUT_ASSERT(step_ != nullptr);
   const PassiveStep& step = *std::exchange(step_, nullptr);
   PassiveBody& own = *body_.interior_->able().passive;
+  body_.report_progress();  // a window may have thousands of steps, many of them without an answer
   if (auto failed = body_.patiently([&] { return own.pass(step, reply); })) return *failed;
-  body_.report_progress();  // a window may have thousands of these
   if (auto failed = body_.tell(reply.record, step.end)) return *failed;
   return Advanced{};
 }
