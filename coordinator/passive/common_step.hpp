@@ -40,8 +40,8 @@ class CommonStep {
   /// anywhere: restore them. `lenient`: bodies may gain, it is taken from them.
   std::optional<Refusal> take(double begin, double end, bool lenient, PassiveLedger& ledger);
   /// Of bodies without inertia, after a step that was taken: the same once more, from where they
-  /// are and were saved, so that what held them as wholes in it lets go. False: restore them; the
-  /// step is as it was.
+  /// are and were saved, so that what held them as wholes in it lets go; they are held by
+  /// 4^-looser of it. False: restore them; the step is as it was.
   bool settle(double begin, double end, int looser, bool lenient, PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }

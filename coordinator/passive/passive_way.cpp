@@ -93,6 +93,7 @@ std::optional<Failed> PassiveWay::enter(double time, bool unanswered) {
   }
   active_ = true;
   level_ = good_ = held_ = 0;
+  farthest_ = 0.0;
   return step_->begin(time);
 }
 
@@ -174,13 +175,13 @@ bool PassiveWay::step(double begin, double end, PassiveRecord& record, bool leni
 /// loosely, by what is proportional to how far they go. Where impulses are not found for what is
 /// held loosely it is held more.
 void PassiveWay::settle(double begin, double end, bool lenient) {
-  double held = step_->farthest();  // [m] that a step would go under it by what holds at first
-  farthest_ = std::max(farthest_, held);
-  double least = held;
+  double left = step_->farthest();  // [m] by which what is out of balance would move a first step
+  farthest_ = std::max(farthest_, left);
+  double least = left;
   int most = loosest, vain = 0;
   for (int k = 0; k < most_settling_steps && vain < most_vain_steps; ++k) {
-    if (held <= settled * farthest_) return;
-    const double free = std::log2(settling_way * farthest_ / held) / 2.0;
+    if (left <= settled * farthest_) return;
+    const double free = std::log2(settling_way * farthest_ / left) / 2.0;
     const int looser = static_cast<int>(std::clamp<double>(free, std::min(1, most), most));
     bodies_.save_all();
     if (!step_->settle(begin, end, looser, lenient, ledger_)) {
@@ -189,9 +190,9 @@ void PassiveWay::settle(double begin, double end, bool lenient) {
       if (most < 0) break;
       continue;
     }
-    held = std::ldexp(step_->farthest(), -2 * looser);
-    vain = held > in_vain * least ? vain + 1 : 0;
-    least = std::min(least, held);
+    left = std::ldexp(step_->farthest(), -2 * looser);
+    vain = left > in_vain * least ? vain + 1 : 0;
+    least = std::min(least, left);
   }
   if (least > nearly_settled * farthest_) ++ledger_.unsettled;
 }

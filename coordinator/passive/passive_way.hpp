@@ -86,7 +86,7 @@ class PassiveWay {
   int level_ = 0;                            // steps are nominal / 2^level
   int good_ = 0;                             // steps since the level changed
   int held_ = 0;                             // times in a row that bodies were held rigid
-  double farthest_ = 0.0;                    // [m] of statics: as a step went at most
+  double farthest_ = 0.0;                    // [m] of statics: by a step at most, since enter()
   std::vector<std::array<int, 4>> pressed_;  // body, port, body, port
   std::unique_ptr<TouchingSurfaces> surfaces_;
   std::unique_ptr<NearRows> near_;

@@ -31,17 +31,21 @@ SolidText leaning_card(const std::string& name, double degrees, double x, double
           .block = block_in(2, {0.09, 0.001}, {12, 1})};
 }
 
+SolidText table() {
+  return {.name = "table",
+          .position = {-0.2, -0.02},
+          .port = "skin",
+          .side = "boundary",
+          .model = "rigid_tool",
+          .block = block_in(2, {0.4, 0.02}, {1, 1})};
+}
+
 /// Two cards that lean towards each other; a corner of the right one begins 4.2e-5 m in the table.
 TEST(PassivePushOut, IsPaidOutOfWhatIsLostForGood) {
   const auto run = run_solids(0.03, 5.0e-4,
                               {leaning_card("left", 70.0, -0.0316, 0.0006),
                                leaning_card("right", 110.0, 0.0325, 0.0003),
-                               {.name = "table",
-                                .position = {-0.2, -0.02},
-                                .port = "skin",
-                                .side = "boundary",
-                                .model = "rigid_tool",
-                                .block = block_in(2, {0.4, 0.02}, {1, 1})}},
+                               table()},
                               "", "contact: {everything: {friction: 0.5}}\n");
   ASSERT_TRUE(run->completed()) << run->end.reason;
   const GivenUp& up = run->end.given_up;
@@ -68,12 +72,7 @@ TEST(PassivePushOut, WhatSupportsDriveOntoAToolIsNamed) {
         .side = "boundary",
         .more = "    constraints: {all: {on: boundary, x: \"0\", y: \"-0.1 * t\"}}\n",
         .block = block_in(2, {0.1, 0.1}, {1, 1})},
-       {.name = "table",
-        .position = {-0.2, -0.02},
-        .port = "skin",
-        .side = "boundary",
-        .model = "rigid_tool",
-        .block = block_in(2, {0.4, 0.02}, {1, 1})}},
+       table()},
       "", "contact: {everything: {}}\n");
   EXPECT_FALSE(run->completed());
   EXPECT_NE(run->end.reason.find("supports and tools drive 'driven' and 'table' onto each other"),

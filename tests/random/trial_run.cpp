@@ -71,9 +71,9 @@ class Outsides {
     std::vector<Intersection> found;
     intersections(*trees_, places_, deep * shortest_, {}, found);
     for (const Intersection& each : found) {
-      const std::int32_t edge =
+      const std::int32_t point =
           skin_.dim == 2 ? skin_.facets[each.edge][0] : skin_.edges[each.edge][0];
-      std::pair<int, int> pair(skin_.group[edge], skin_.group[skin_.facets[each.facet][0]]);
+      std::pair<int, int> pair(skin_.group[point], skin_.group[skin_.facets[each.facet][0]]);
       if (wholes_[index(pair.first)] == wholes_[index(pair.second)]) continue;
       if (pair.first > pair.second) std::swap(pair.first, pair.second);
       if (known_.insert(pair).second)
