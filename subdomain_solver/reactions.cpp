@@ -39,11 +39,11 @@ NodalReactions::NodalReactions(const FeModel& model, const Problem& problem,
 /// Loads of the problem tell forces that partners give, not those of a contact that the body finds.
 void NodalReactions::forces(const Motion& motion, double time, const Vector& on_ports,
                             Vector& out) {
-  integrator_.acceleration(motion, time, step_, acceleration_);
-  inertia_.noalias() = mass_ * acceleration_;
   external_.setZero(on_ports.size());
   for (std::size_t k = 0; k < own_loads_; ++k) problem_.loads[k]->add(time, motion.q, external_);
   external_ += on_ports;
+  integrator_.acceleration(motion, time, step_, external_, acceleration_);
+  inertia_.noalias() = mass_ * acceleration_;
   out.setZero(on_ports.size());
   int k = 0;
   for (const Prescribed& p : problem_.supports)

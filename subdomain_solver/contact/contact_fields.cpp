@@ -53,13 +53,14 @@ std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& 
 void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact& contact,
                     std::span<const double> forces, std::span<const double> places,
                     std::vector<double>& out) {
+  const SeenGaps seen = contact.seen_gaps();
   std::vector<bool> held;  // (points)
   for (const TouchedSurface& s : surfaces) {
     const Touch t = touch_of(s, forces, places);
     const std::size_t dim = index(s.geometry->dim);
     double area = 0.0, stick_area = 0.0, force = 0.0, square = 0.0;
     held.assign(t.pressure.size(), false);
-    contact.see_gaps(s.port, [&held](std::size_t point, double, bool sticks) {
+    seen.visit(s.port, s.nodes.size(), [&held](std::size_t point, double, bool sticks) {
       if (sticks) held[point] = true;
     });
     std::vector<double> centre(dim, 0.0);
@@ -95,10 +96,11 @@ std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& s
                                             const SurfaceContact& contact, std::size_t nodes,
                                             std::span<const double> forces,
                                             std::span<const double> places) {
+  const SeenGaps seen = contact.seen_gaps();
   std::vector<FieldValues> out(3, FieldValues(nodes, 0.0));
   for (const TouchedSurface& s : surfaces) {
     const Touch t = touch_of(s, forces, places);
-    contact.see_gaps(s.port, [&](std::size_t point, double gap, bool sticks) {
+    seen.visit(s.port, s.nodes.size(), [&](std::size_t point, double gap, bool sticks) {
       double& least = out[1][s.nodes[point]];
       double& status = out[2][s.nodes[point]];
       least = status == 0.0 ? gap : std::min(least, gap);  // of all partners

@@ -56,6 +56,9 @@ void SurfaceContact::state(Archive& archive) {
   archive.field("anchored", anchored_);
   archive.field("dissipated", dissipated_);
   if (interference_) interference_->state(archive);
+  if (archive.writing()) kept_gaps_ = seen_gaps();
+  kept_gaps_.state(archive);
+  restored_ = restored_ || !archive.writing();
 }
 
 void SurfaceContact::let_go() {
@@ -120,6 +123,7 @@ void SurfaceContact::begin_forces() {
 }
 
 void SurfaceContact::impose(const Window& window) {
+  restored_ = false;
   meet(window);
   begin_forces();
   if (interference_) interference_->begin(window.grid.begin);
@@ -231,22 +235,6 @@ const std::vector<std::int32_t>* SurfaceContact::reacting(std::size_t port,
 std::string SurfaceContact::misfit(std::size_t port, const PortKernel& kernel) const {
   if (!has(port)) return "this port takes no obstacles";
   return misfit_of(kernel, 0.0, ForceSupport::nodal, 0);
-}
-
-void SurfaceContact::see_gaps(std::size_t port, const SeeGap& see) const {
-  for (const Meeting& m : meetings_) {
-    if (m.obstacle->port() != port || !m.obstacle->acts()) continue;
-    const SurfaceRows& rows = m.obstacle->rows();
-    const double left = left_of(m, time_);
-    for (int r = 0; r < rows.count(); ++r) {
-      const std::int32_t first = rows.k.offsets[r], last = rows.k.offsets[index(r) + 1];
-      const auto begin = rows.k.values.begin();
-      const auto most = std::max_element(begin + first, begin + last);
-      const bool sticks =
-          r < m.rows && row_state(rows_[m.first_row + r], row_force_) == RowState::sticks;
-      see(index(rows.k.columns[most - begin]), rows.gaps[r] + left, sticks);
-    }
-  }
 }
 
 void SurfaceContact::aim(int i, const std::vector<double>&, const std::vector<double>& places) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "subdomain_solver/contact/interference.hpp"
 #include "subdomain_solver/contact/near_compliance.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
+#include "subdomain_solver/contact/seen_gaps.hpp"
 #include "subdomain_solver/contact/surface_obstacle.hpp"
 #include "subdomain_solver/contact/tied_neighbours.hpp"
 #include "subdomain_solver/fe/cell_kernel.hpp"
@@ -61,10 +61,8 @@ class SurfaceContact final : public PortContact {
   /// Of each row's force the half, on the way by which its gap has closed.
   double taken_at_once() const;
   double pressed_in() const { return interference_ ? interference_->work() : 0.0; }  // [J] overlap
-  /// Calls `see` with the points of a port that have something near, the gaps [m] there, and
-  /// whether friction holds them.
-  using SeeGap = std::function<void(std::size_t point, double gap, bool sticks)>;
-  void see_gaps(std::size_t port, const SeeGap& see) const;
+  /// At the end of the substep that was settled last.
+  SeenGaps seen_gaps() const;
 
   const std::vector<int>& coordinates() const override { return dofs_; }
   const Vector* solve(double time, const Vector& free, Compliance& give) override;
@@ -166,6 +164,8 @@ class SurfaceContact final : public PortContact {
   std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
   std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state
   std::vector<double> dissipated_;  // [J] (meetings) by friction: state
+  SeenGaps kept_gaps_;              // of a state that was saved: state
+  bool restored_ = false;           // they are those of now, as the rows are of another state
   int looks_ = 0;                   // at the geometry, at this time
   double time_ = 0.0;               // [s] that was solved for last
   // The problem of all rows, by component:

@@ -41,6 +41,26 @@ void SurfaceContact::share_shears(const Meeting& m) {
   }
 }
 
+SeenGaps SurfaceContact::seen_gaps() const {
+  if (restored_) return kept_gaps_;
+  SeenGaps seen;
+  for (const Meeting& m : meetings_) {
+    if (!m.obstacle->acts()) continue;
+    const SurfaceRows& rows = m.obstacle->rows();
+    const double left = left_of(m, time_);
+    for (int r = 0; r < rows.count(); ++r) {
+      const std::int32_t first = rows.k.offsets[r], last = rows.k.offsets[index(r) + 1];
+      const auto begin = rows.k.values.begin();
+      const auto most = std::max_element(begin + first, begin + last);
+      const bool sticks =
+          r < m.rows && row_state(rows_[m.first_row + r], row_force_) == RowState::sticks;
+      seen.add(m.obstacle->port(), index(rows.k.columns[most - begin]), rows.gaps[r] + left,
+               sticks);
+    }
+  }
+  return seen;
+}
+
 /// What friction took in the substep: by the mean of the forces at its ends, as the schemes work
 /// with them. Which points slid, and where the partner was.
 void SurfaceContact::settle_friction(std::size_t meeting) {

@@ -72,7 +72,9 @@ Vector ModalReactions::at_rest(const Vector& force) const {
 const Vector& ModalReactions::carried(const Motion& motion, double time, const Vector& on_ports) {
   force_ = on_ports;
   for (const std::unique_ptr<Load>& load : body_.loads) load->add(time, {}, force_);
-  body_.integrator.acceleration(motion, time, body_.step, rates_);
+  external_.setZero(static_cast<Eigen::Index>(motion.q.size()));
+  body_.map.lift(motion.q, span_of(force_), external_);
+  body_.integrator.acceleration(motion, time, body_.step, external_, rates_);
   acceleration_.resize(index(force_.size()));
   body_.map.acceleration(motion.q, motion.v, span_of(rates_), acceleration_);
   force_.noalias() -= body_.mass * view(acceleration_);

@@ -42,7 +42,7 @@ class ModalReactions final : public Reactions {
   FreeCoordinates held_;    // less rigid motions that the supports allow
   std::unique_ptr<LinearSolver> solver_;
   Eigen::MatrixXd shapes_;  // (dofs, constraints x dim) of unit displacements of the constraints
-  Vector rates_, force_, sums_;
+  Vector external_, rates_, force_, sums_;
   std::vector<double> acceleration_;
 };
 

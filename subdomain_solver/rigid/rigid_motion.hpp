@@ -17,7 +17,8 @@ class RigidMotion final : public Integrator, private Inertia {
       : Integrator({.inertia = this}), problem_(problem), body_(body) {}
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void acceleration(const Motion& motion, double, double, Vector& out) const override {
+  void acceleration(const Motion& motion, double, double, const Vector&,
+                    Vector& out) const override {
     out = view(motion.a);
   }
   double kinetic(const Motion& motion) const override { return body_.kinetic(motion.q, motion.v); }

@@ -122,7 +122,8 @@ std::optional<Failed> DriftKickDrift::step(Motion& motion, double time, double d
   return std::nullopt;
 }
 
-void DriftKickDrift::acceleration(const Motion& motion, double, double, Vector& out) const {
+void DriftKickDrift::acceleration(const Motion& motion, double, double, const Vector&,
+                                  Vector& out) const {
   out = view(motion.a);
 }
 

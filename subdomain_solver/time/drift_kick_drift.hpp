@@ -26,7 +26,8 @@ class DriftKickDrift final : public Integrator, private Inertia, private Foresee
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
   /// Means of the last step, as the balance in its middle has them.
-  void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
+  void acceleration(const Motion& motion, double time, double step, const Vector& external,
+                    Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:

@@ -172,7 +172,7 @@ void ExplicitDynamics::strike(Motion& motion, const Vector& impulse) {
 
 /// Steps keep none of prescribed coordinates: they move from value to value.
 void ExplicitDynamics::acceleration(const Motion& motion, double time, double step,
-                                    Vector& out) const {
+                                    const Vector&, Vector& out) const {
   out = view(motion.a);
   problem_.set_accelerations(time, step, out);
 }

@@ -19,7 +19,8 @@ class ExplicitDynamics final : public Integrator, private Inertia {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void acceleration(const Motion& motion, double time, double step, Vector& out) const override;
+  void acceleration(const Motion& motion, double time, double step, const Vector& external,
+                    Vector& out) const override;
   double kinetic(const Motion& motion) const override;
 
  private:

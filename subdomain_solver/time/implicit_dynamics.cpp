@@ -280,7 +280,7 @@ void ImplicitDynamics::strike(Motion& motion, const Vector& impulse) {
 /// Newmark's are those of the balance at every step's end. With other weights they lag, and sums
 /// tell of none: the balance is solved for them.
 void ImplicitDynamics::acceleration(const Motion& motion, double time, double step,
-                                    Vector& out) const {
+                                    const Vector& external, Vector& out) const {
   if (options_.weights.is_newmark() && !sums()) {
     out = view(motion.a);
     return;
@@ -288,7 +288,7 @@ void ImplicitDynamics::acceleration(const Motion& motion, double time, double st
   out.setZero(static_cast<Eigen::Index>(motion.q.size()));
   problem_.set_accelerations(time, step, out);
   times_mass(out, of_mass_.rest);
-  of_mass_.rest = problem_.external_force(time, motion.q) - view(motion.force) - of_mass_.rest;
+  of_mass_.rest = external - view(motion.force) - of_mass_.rest;
   const bool solved = solve_mass(of_mass_.rest, out);
   ABUT_ASSERT(solved);  // as at the begin
 }

@@ -40,8 +40,10 @@ class Integrator {
   /// From `time` to `time + dt`. When it fails, the motion is as before.
   [[nodiscard]] virtual std::optional<Failed> step(Motion& motion, double time, double dt) = 0;
   /// [m/s^2] (dofs) at a time of the motion, prescribed coordinates included, as the balance of
-  /// forces at this time has them; step [s]: of the scheme.
-  virtual void acceleration(const Motion& motion, double time, double step, Vector& out) const = 0;
+  /// forces at this time has them; step [s]: of the scheme; external [N] (dofs): all forces from
+  /// outside at this time, so that a body which has come back to a state need not know its window.
+  virtual void acceleration(const Motion& motion, double time, double step, const Vector& external,
+                            Vector& out) const = 0;
   /// [J] in the form that the scheme conserves where it conserves one.
   virtual double kinetic(const Motion& motion) const = 0;
   double stored(const Motion& motion) const { return motion.stored; }

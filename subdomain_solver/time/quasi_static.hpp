@@ -34,7 +34,8 @@ class QuasiStatic final : public Integrator {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void acceleration(const Motion& motion, double, double, Vector& out) const override {
+  void acceleration(const Motion& motion, double, double, const Vector&,
+                    Vector& out) const override {
     out.setZero(static_cast<Eigen::Index>(motion.q.size()));
   }
 

@@ -25,8 +25,9 @@ class StableSteps final : public Integrator, private Foreseeing {
 
   [[nodiscard]] std::optional<Failed> begin(Motion& motion, double time) override;
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double time, double dt) override;
-  void acceleration(const Motion& motion, double time, double step, Vector& out) const override {
-    steps_->acceleration(motion, time, step, out);
+  void acceleration(const Motion& motion, double time, double step, const Vector& external,
+                    Vector& out) const override {
+    steps_->acceleration(motion, time, step, external, out);
   }
   double kinetic(const Motion& motion) const override { return steps_->kinetic(motion); }
   /// stable_step.min [s], of all bounds so far; stable_step.parts, the most of a step.

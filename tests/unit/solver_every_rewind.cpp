@@ -1,6 +1,7 @@
 // Goal: every kind of body under every scheme, law and formulation comes back to a saved state bit
 // for bit, and so does another one from a checkpoint: with data on its ports, in plastic flow,
-// after shortened last substeps. Oracle: equal hashes and traces.
+// after shortened last substeps. What it tells and draws there is the same. Oracle: equal hashes,
+// traces, measures and fields.
 
 #include <string>
 #include <vector>
@@ -58,12 +59,16 @@ void rewind(const Maker& maker, bool obstructed) {
   step(*body, pressed(*body, 0, obstructed), first);
   const std::uint64_t saved = body->state_hash();
   const std::vector<std::byte> checkpoint = body->checkpoint();
+  const std::vector<double> measures = body->measure();
+  const std::vector<FieldValues> drawn = body->fields();
   body->save();
   const Advance next = pressed(*body, 1, obstructed);
   step(*body, next, first);
   const std::uint64_t hash = body->state_hash();
   body->restore();
   EXPECT_EQ(body->state_hash(), saved);
+  EXPECT_EQ(body->measure(), measures);
+  EXPECT_EQ(body->fields(), drawn);
   step(*body, free_request(*body, instants[1], 1.0), second);  // must leave no trace
   body->restore();
   step(*body, next, second);
@@ -71,6 +76,8 @@ void rewind(const Maker& maker, bool obstructed) {
   step(*twin, free_request(*twin, 0.0, 0.1), third);  // nor here
   twin->resume(checkpoint);
   EXPECT_EQ(twin->state_hash(), saved);
+  EXPECT_EQ(twin->measure(), measures);
+  EXPECT_EQ(twin->fields(), drawn);
   step(*twin, next, third);
   EXPECT_EQ(twin->state_hash(), hash);
   for (std::size_t p = 0; p < first.ports.size(); ++p) {

@@ -182,10 +182,14 @@ TEST_P(SurfaceContactOf, ComesBackBitForBit) {
   body->save();
   const std::uint64_t before = body->state_hash();
   const std::vector<std::byte> durable = body->checkpoint();
+  const std::vector<double> measures = body->measure();
+  const std::vector<FieldValues> drawn = body->fields();
   const Response first = advance(*body, 0.2, 0.4);
   const std::uint64_t after = body->state_hash();
   body->restore();
   EXPECT_EQ(body->state_hash(), before);
+  EXPECT_EQ(body->measure(), measures);
+  EXPECT_EQ(body->fields(), drawn);
   const Response second = advance(*body, 0.2, 0.4);
   EXPECT_EQ(body->state_hash(), after);
   EXPECT_EQ(first.ports[0].reactions[0].force.f, second.ports[0].reactions[0].force.f);
@@ -193,6 +197,9 @@ TEST_P(SurfaceContactOf, ComesBackBitForBit) {
   const std::unique_ptr<Subdomain> twin = block(GetParam());
   press_plate(*twin);
   twin->resume(durable);
+  EXPECT_EQ(twin->state_hash(), before);
+  EXPECT_EQ(twin->measure(), measures);
+  EXPECT_EQ(twin->fields(), drawn);
   const Response third = advance(*twin, 0.2, 0.4);
   EXPECT_EQ(twin->state_hash(), after);
   EXPECT_EQ(first.ports[0].reactions[0].force.f, third.ports[0].reactions[0].force.f);
