@@ -20,6 +20,9 @@ struct PassiveStep {
   // Of bodies without inertia: what holds them in the step is 4^-looser of what it is by itself.
   std::int32_t looser = 0;
   static constexpr std::int32_t loosest = 20;
+  // The same step from the same state as the last one, under other impulses: a body that looks for
+  // its answer may begin at the last one, and its reply may then depend on that.
+  bool again = false;
 
   double length() const { return end - begin; }
 };

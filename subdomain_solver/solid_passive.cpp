@@ -396,6 +396,7 @@ std::optional<Failed> SolidInterior::pass_guarded(const PassiveStep& step, Passi
     change_.setZero(parts_.problem->model->dofs());
     port_map_->lift(motion.q, now_, change_);
     if (description_.quasi_static) midpoint_->loosen(step.looser);
+    midpoint_->go_on_from_last(step.again);
     if (auto failed = step_guarded(step)) return failed;
     if (QuasiStatic* statics = parts_.scheme.integrator->able().statics)
       statics->tell_held(midpoint_->borne(), midpoint_->moved(), midpoint_->acting(), motion);

@@ -277,7 +277,8 @@ std::optional<Failed> CommonStep::advance(bool all) {
     const bool touched = std::ranges::any_of(
         asked.impulses, [](const std::vector<double>& port) { return !port.empty(); });
     if (!all && !touched && !ties_.joined(b) && !points_.any(b)) continue;
-    if (advanced_[index(b)] != 0) bodies_[b].restore();
+    asked.again = advanced_[index(b)] != 0;
+    if (asked.again) bodies_[b].restore();
     advanced_[index(b)] = 1;
     asked.begin = step_.begin;
     asked.end = step_.end;

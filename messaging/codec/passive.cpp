@@ -79,6 +79,7 @@ void encode(const PassiveStep& from, WireWriter& to) {
     to.numbers(v1::PassivePush::kImpulseFieldNumber, from.impulses[p]);
     to.close(Step::kPortsFieldNumber, before);
   }
+  to.integer(Step::kAgainFieldNumber, from.again ? 1 : 0);
   to.integer(Step::kLooserFieldNumber, from.looser);
   to.number(Step::kEndFieldNumber, from.end);
   to.number(Step::kBeginFieldNumber, from.begin);
@@ -89,6 +90,7 @@ void decode(Bytes bytes, const Description& body, PassiveStep& to) {
   const FieldPath all_ports{&path, "ports"};
   to.begin = to.end = 0.0;
   to.looser = 0;
+  to.again = false;
   to.impulses.resize(body.ports.size());
   to.pressed.resize(body.ports.size());
   std::size_t ports = 0;
@@ -102,6 +104,9 @@ void decode(Bytes bytes, const Description& body, PassiveStep& to) {
         break;
       case Step::kLooserFieldNumber:
         to.looser = decode_looser(from.integer(), FieldPath{&path, "looser"});
+        break;
+      case Step::kAgainFieldNumber:
+        to.again = from.integer() != 0;
         break;
       case Step::kPortsFieldNumber:
         if (ports >= body.ports.size()) {

@@ -167,20 +167,38 @@ std::optional<Failed> MidpointStep::solve_linear(const Motion& motion) {
 
 /// From the free step, whose tangent is the first one.
 std::optional<Failed> MidpointStep::solve(const Motion& motion, const Vector& impulse) {
-  if (!unpushed_.is_of(motion, start_, end_)) find_free_step(motion);
+  if (!unpushed_.is_of(motion, start_, end_)) {
+    find_free_step(motion);
+    answered_ = false;
+  }
   given_ = impulse + length_ * loads_;
-  own_.made = false;
+  const bool pushed = (impulse.array() != 0.0).any();
+  if (pushed && again_ && answered_ && go_on(motion)) return std::nullopt;
+  own_.made = answered_ = false;
   present_ = &unpushed_.factors;
   next_ = &own_;
-  const bool pushed = (impulse.array() != 0.0).any();
   if (unpushed_.failed && !pushed) return unpushed_.failed;
+  std::optional<Failed> failed;
   if (unpushed_.failed) {
     present_ = next_;
-    return solve_from_begin(motion);
+    failed = solve_from_begin(motion);
+  } else {
+    change_ = unpushed_.change;
+    if (!respond(motion)) return failed_newton({NewtonReport::End::inadmissible}, end_);
+    if (pushed) failed = iterate(motion);
   }
-  change_ = unpushed_.change;
-  if (!respond(motion)) return failed_newton({NewtonReport::End::inadmissible}, end_);
-  return pushed ? iterate(motion) : std::nullopt;
+  answered_ = pushed && !failed;
+  if (answered_) answer_ = change_;
+  return failed;
+}
+
+/// From the last answer, which differs by less and less as impulses settle.
+bool MidpointStep::go_on(const Motion& motion) {
+  if (!present_->made) present_ = next_;  // the free step's is of its own place
+  change_ = answer_;
+  if (!respond(motion) || iterate(motion)) return false;
+  answer_ = change_;
+  return true;
 }
 
 void MidpointStep::find_free_step(const Motion& motion) {

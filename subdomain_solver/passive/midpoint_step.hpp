@@ -19,7 +19,8 @@ namespace abut {
 /// to round-off, and momentum is that of the impulses. A linear body is solved with one
 /// factorisation per length of step. Of other bodies it begins at the free step from the same
 /// state, with its tangent: both are kept while the state is tried under one impulse after the
-/// other, and depend on the state alone. Loads that follow the body are those of the place to which
+/// other, and depend on the state alone; or, where it is told to, at the answer to the impulse
+/// before, with the tangent of that. Loads that follow the body are those of the place to which
 /// it would go freely.
 class MidpointStep {
  public:
@@ -40,6 +41,8 @@ class MidpointStep {
   const Vector& mass() const { return body_.mass; }
   /// Of a body that rests: its mass in what follows is 4^-looser of what it is.
   void loosen(int looser);
+  /// Whether what follows is the last step once more, under another impulse.
+  void go_on_from_last(bool again) { again_ = again; }
   /// From `begin` to `end`. Forces of supports [N], means over the step, are left in motion.force.
   /// When it fails the motion is as before.
   [[nodiscard]] std::optional<Failed> step(Motion& motion, double begin, double end,
@@ -81,6 +84,7 @@ class MidpointStep {
   [[nodiscard]] std::optional<Failed> solve_linear(const Motion& motion);
   [[nodiscard]] std::optional<Failed> solve(const Motion& motion, const Vector& impulse);
   void find_free_step(const Motion& motion);
+  [[nodiscard]] bool go_on(const Motion& motion);
   [[nodiscard]] std::optional<Failed> solve_from_begin(const Motion& motion);
   [[nodiscard]] std::optional<Failed> iterate(const Motion& motion);
   [[nodiscard]] bool correct(const Motion& motion, bool afresh);
@@ -100,7 +104,9 @@ class MidpointStep {
   int looser_ = 0;  // than that of the body
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
   FreeStep unpushed_;
-  Factors own_;  // of a step under impulses
+  Factors own_;        // of a step under impulses
+  Vector answer_;      // [m/s] (dofs) to the last impulse, from the state of the free step
+  bool again_ = false, answered_ = false;
   // Of the two, those of the last correction, and those that the next tangent goes to.
   Factors *present_ = nullptr, *next_ = nullptr;
   SparseMatrix inertia_, tangent_, matrix_;

@@ -28,6 +28,7 @@ struct Talk {
     step.begin = dice.coin() ? 0.0 : dice.value();
     step.end = step.begin + 0.5 + dice.value();
     step.looser = dice.coin() ? 0 : dice.upto(PassiveStep::loosest);
+    step.again = dice.coin();
     for (int p = dice.upto(3); p >= 0; --p) {
       body.ports.push_back({"port" + std::to_string(p), dice.surface(body.dim), false});
       const SurfaceSize size = size_of(body.ports.back().geometry);
@@ -66,6 +67,7 @@ void expect_equal(const PassiveStep& got, const PassiveStep& sent) {
   EXPECT_EQ(got.impulses, sent.impulses);
   EXPECT_EQ(got.pressed, sent.pressed);
   EXPECT_EQ(got.looser, sent.looser);
+  EXPECT_EQ(got.again, sent.again);
 }
 
 void expect_equal(const PassiveReply& got, const PassiveReply& sent) {

@@ -71,6 +71,7 @@ class PassiveRun {
                   std::int32_t looser = 0) {
     PassiveStep request;
     request.looser = looser;
+    request.again = again;
     request.begin = time;
     request.end = time + length;
     request.impulses = {impulses};
@@ -96,6 +97,7 @@ class PassiveRun {
   }
 
   double time = 0.0, lost = 0.0;
+  bool again = false;  // what follows is the last step once more
 
  private:
   std::unique_ptr<Subdomain> own_;
