@@ -192,12 +192,11 @@ TEST(PassiveFinite, StepsOnceMoreAreThoseFromTheBegin) {
       double largest = 0.0;
       for (const double moved : other.ports[0].displacement)
         largest = std::max(largest, std::abs(moved));
-      // Both balances are at their rounding: 1e-15 of forces, by the stiffness of 1e2 a step.
+      const double left = 1.0e-9;  // of it, balances end near 1e-12, of worse conditioned bodies earlier
       for (std::size_t k = 0; k < one.ports[0].displacement.size(); ++k)
-        EXPECT_NEAR(one.ports[0].displacement[k], other.ports[0].displacement[k],
-                    1.0e-9 * largest);
+        EXPECT_NEAR(one.ports[0].displacement[k], other.ports[0].displacement[k], left * largest);
       EXPECT_NEAR(one.record.energy.total(), other.record.energy.total(),
-                  1.0e-9 * other.record.energy.total());
+                  left * other.record.energy.total());
     }
   }
 }
