@@ -14,9 +14,9 @@ namespace abut {
 
 namespace {
 
-/// Rows: the matrix of more of them on each other costs more than they do one after the other. What
-/// rubs has three numbers a row, and Newton's method in the place of active sets.
-constexpr std::size_t most_of_one_matrix = 500, most_that_rub = 60;
+/// Rows: the matrix of more of them on each other costs more than they do one after the other; and
+/// those that a matrix can hold where that finds no answer.
+constexpr std::size_t few = 60, most_of_one_matrix = 500;
 /// Of the largest force: a pass that changes forces by less is rounding.
 constexpr double settled_pass = 1.0e-13;
 /// Of what the first pass of a round changes: the next round is as good.
@@ -47,7 +47,7 @@ void SurfaceContact::number_points() {
 
 /// Whether forces are found row by row: of many rows, on bodies that give way near forces alone.
 bool SurfaceContact::many(Compliance& give) {
-  if (rows_.size() <= (rubs_ ? most_that_rub : most_of_one_matrix)) return false;
+  if (rows_.size() <= few) return false;
   if (!near_give_.has_points()) number_points();
   return near_give_.find(give);
 }
