@@ -192,7 +192,7 @@ TEST(PassiveFinite, StepsOnceMoreAreThoseFromTheBegin) {
       double largest = 0.0;
       for (const double moved : other.ports[0].displacement)
         largest = std::max(largest, std::abs(moved));
-      const double left = 1.0e-9;  // of it, balances end near 1e-12, of worse conditioned bodies earlier
+      const double left = 1.0e-9;  // of it: worse conditioned bodies end earlier than at 1e-12
       for (std::size_t k = 0; k < one.ports[0].displacement.size(); ++k)
         EXPECT_NEAR(one.ports[0].displacement[k], other.ports[0].displacement[k], left * largest);
       EXPECT_NEAR(one.record.energy.total(), other.record.energy.total(),
