@@ -9,6 +9,7 @@
 #include "base/vector_units.hpp"
 #include "subdomain_solver/fe/batched_law.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
+#include "subdomain_solver/materials/mooney_rivlin.hpp"
 
 namespace abut {
 
@@ -51,6 +52,11 @@ HardeningNumbers hardening_of(const Material& material) {
     numbers.rate = h.saturation->rate;
   }
   return numbers;
+}
+
+MooneyRivlinNumbers invariants_of(const Material& material) {
+  const auto* law = dynamic_cast<const MooneyRivlin*>(&material);
+  return law == nullptr ? MooneyRivlinNumbers{} : law->numbers();
 }
 
 /// Rows of Dim numbers, wherever they lie, to rows of 4, and back.
@@ -99,7 +105,7 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
       patches_(mesh),
       table_(options.kernels != nullptr ? *options.kernels : *batched_kernels().front()),
       parameters_{material.moduli(), options.hourglass * material.moduli().p_wave(),
-                  options.thickness, hardening_of(material)},
+                  options.thickness, hardening_of(material), invariants_of(material)},
       threads_(options.threads) {
   ABUT_ASSERT(can(mesh, material, options.formulation));
   for (const CellBlock& block : mesh.blocks) {

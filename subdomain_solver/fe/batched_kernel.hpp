@@ -6,6 +6,7 @@
 #include "base/index.hpp"
 #include "subdomain_solver/materials/hardening_numbers.hpp"
 #include "subdomain_solver/materials/moduli.hpp"
+#include "subdomain_solver/materials/mooney_rivlin_numbers.hpp"
 
 namespace abut {
 
@@ -33,6 +34,7 @@ struct BatchedParameters {
   double hourglass = 0.0;  // [Pa] coefficient x P-wave modulus
   double thickness = 1.0;  // [m] of plane cells
   HardeningNumbers hardening;
+  MooneyRivlinNumbers mooney_rivlin;
 };
 
 /// Internal force and stored energy of a patch. False: a point has no answer.
@@ -51,7 +53,15 @@ struct FrequencyQuestion {
 };
 using FrequencyKernel = void (*)(const PatchView&, const BatchedParameters&, FrequencyQuestion&);
 
-enum class BatchedLaw { linear_elastic, saint_venant_kirchhoff, neo_hookean, j2_plasticity, count };
+enum class BatchedLaw {
+  linear_elastic,
+  saint_venant_kirchhoff,
+  neo_hookean,
+  mooney_rivlin,
+  hencky,
+  j2_plasticity,
+  count
+};
 enum class BatchedCell {
   hex8,
   hex8_one_point,

@@ -64,25 +64,46 @@ template <int nodes>
     }
 }
 
-/// A law that is called, not inlined: what plasticity does at a point costs hundreds of times what
-/// a call does, and within each cell's code it takes minutes to compile.
-template <class Law>
-struct Called : Law {
-  using Law::Law;
+/// A law that is called, not inlined: what it does at a point costs hundreds of times what a call
+/// does, within each cell's code it takes minutes to compile, and one such code serves all of them.
+class CalledLaw {
+ public:
+  static constexpr bool dissipates = true;  // or nothing
 
-  template <class... Out>
-  [[gnu::noinline]] void operator()(int point, const TensorLanes<ABUT_LANES>& h,
-                                    Out&... out) const {
-    Law::operator()(point, h, out...);
+  virtual void begin(int batch, int slice) = 0;
+  virtual void respond(int point, const TensorLanes<ABUT_LANES>& h,
+                       LaneResponse<ABUT_LANES>& out) const = 0;
+  [[gnu::always_inline]] void operator()(int point, const TensorLanes<ABUT_LANES>& h,
+                                         LaneResponse<ABUT_LANES>& out) const {
+    respond(point, h, out);
   }
+
+ protected:
+  ~CalledLaw() = default;
+};
+
+template <class Points>
+class CalledPoints final : public CalledLaw {
+ public:
+  CalledPoints(const PatchView& patch, const BatchedParameters& parameters)
+      : points_(patch, parameters) {}
+
+  void begin(int batch, int slice) override { points_.begin(batch, slice); }
+  void respond(int point, const TensorLanes<ABUT_LANES>& h,
+               LaneResponse<ABUT_LANES>& out) const override {
+    points_(point, h, out);
+    if constexpr (!Points::dissipates) out.dissipation = Lanes<ABUT_LANES>::Real{};
+  }
+
+ private:
+  Points points_;
 };
 
 template <class Cell, class Law>
-bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
+[[gnu::noinline]] bool run_cells(PatchView& patch, const BatchedParameters& parameters, Law& law) {
   constexpr int lanes = ABUT_LANES;
   constexpr int size = Cell::nodes * 3 * batch_lanes;
   alignas(64) double x[size], u[size], force[size];
-  Law law(patch, parameters);
   PointSums<lanes, Law::dissipates> sums;
   sums.valid = ~Lanes<lanes>::Bits{};
   for (int b = 0; b < patch.batches; ++b) {
@@ -102,6 +123,17 @@ bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
   ABUT_UNROLLED (l, 0, lanes)
     if (sums.valid[l] == 0) return false;
   return true;
+}
+
+template <class Cell, class Law>
+bool run_patch(PatchView& patch, const BatchedParameters& parameters) {
+  Law law(patch, parameters);
+  return run_cells<Cell, Law>(patch, parameters, law);
+}
+template <class Cell, class Points>
+bool call_patch(PatchView& patch, const BatchedParameters& parameters) {
+  CalledPoints<Points> law(patch, parameters);
+  return run_cells<Cell, CalledLaw>(patch, parameters, law);
 }
 
 /// A law that is asked whether its moduli at a point are below a limit times the metric of the
@@ -210,6 +242,8 @@ constexpr std::array<FrequencyKernel, laws> frequency_row() {
   return {ask_patch<Points, Plain<LinearElasticTangent>>,
           ask_patch<Points, Plain<SaintVenantKirchhoffTangent>>,
           ask_patch<Points, Plain<NeoHookeanTangent>>,
+          ask_patch<Points, Plain<MooneyRivlinTangent>>,
+          ask_patch<Points, Plain<HenckyBound>>,
           ask_patch<Points, J2BoundPoints<ABUT_LANES>>};
 }
 
@@ -218,7 +252,9 @@ constexpr std::array<PatchKernel, laws> row() {
   return {run_patch<Cell, Plain<LinearElasticResponse>>,
           run_patch<Cell, Plain<SaintVenantKirchhoffResponse>>,
           run_patch<Cell, Plain<NeoHookeanResponse>>,
-          run_patch<Cell, Called<J2Points<ABUT_LANES>>>};
+          call_patch<Cell, Plain<MooneyRivlinResponse>>,
+          call_patch<Cell, Plain<HenckyResponse>>,
+          call_patch<Cell, J2Points<ABUT_LANES>>};
 }
 
 /// Of cells whose volume change is of finite strain: linear laws have another one.

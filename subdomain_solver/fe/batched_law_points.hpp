@@ -16,11 +16,19 @@ struct ElasticPoints {
   static constexpr bool dissipates = false;
   Law law;
 
-  ElasticPoints(const PatchView&, const BatchedParameters& p) : law{p.moduli} {}
+  ElasticPoints(const PatchView&, const BatchedParameters& p) : law(law_of(p)) {}
   [[gnu::always_inline]] void begin(int, int) {}
   template <class... Out>
   [[gnu::always_inline]] void operator()(int, const TensorLanes<N>& h, Out&... out) const {
     law(h, out...);
+  }
+
+ private:
+  static Law law_of(const BatchedParameters& p) {
+    if constexpr (requires { Law{p.moduli, p.mooney_rivlin}; })
+      return {p.moduli, p.mooney_rivlin};
+    else
+      return {p.moduli};
   }
 };
 
@@ -67,7 +75,6 @@ struct J2Points {
   [[gnu::always_inline]] void begin(int batch, int slice) { rows.begin(batch, slice); }
   [[gnu::always_inline]] void operator()(int point, const TensorLanes<N>& h,
                                          LaneResponse<N>& out) const {
-    using Real = typename Lanes<N>::Real;
     const HardeningNumbers& hardening = parameters.hardening;
     const J2HistoryLanes<N> before = rows.read(point);
     J2HistoryLanes<N> after;
@@ -76,7 +83,7 @@ struct J2Points {
     state.advance(before, after);
     out.energy = state.energy(parameters.moduli, hardening, after);
     out.dissipation = hardening.yield_stress * state.flow;
-    out.valid = state.valid ? broadcast<Real>(1.0) : broadcast<Real>(-1.0);
+    out.valid = state.answers();
     rows.write(point, after);
   }
 };

@@ -27,7 +27,7 @@ struct DilatedPoints {
     Real amount = Real{};
     for (int p = 0; p < points; ++p) {
       sums.valid &= growth[p] > -1.0;
-      const Real more = more_stretch(Real((growth[p] - mean) / theta));
+      const Real more = inverse_cube_root_less_one<N>(Real((growth[p] - mean) / theta));
       stretch[p] = 1.0 + more;
       TensorLanes<N> f = plus_identity(h[p]), carried;  // Fbar - I = H + (s - 1) F
       ABUT_UNROLLED (k, 0, 9) carried.entry[k] = fused(more, f.entry[k], h[p].entry[k]);
@@ -57,14 +57,6 @@ struct DilatedPoints {
     const Real determinant = cofactor(h, minors);
     const Real trace = h.entry[0] + h.entry[4] + h.entry[8];
     return trace + (minors.entry[0] + minors.entry[4] + minors.entry[8]) + determinant;
-  }
-  /// d of (1 + d)^3 (1 + x) = 1. One step of Newton's method restores the digits that the cube
-  /// root loses near 1.
-  [[gnu::always_inline]] static Real more_stretch(const Real& x) {
-    const Real root = inverse_cube_root<N>(Real(1.0 + x)), d = root - 1.0;
-    const Real cube = d * fused(d, Real(3.0 + d), broadcast<Real>(3.0));  // (1 + d)^3 - 1
-    const Real residual = fused(cube, x, Real(cube + x));
-    return fused(residual, Real(root * (-1.0 / 3.0)), d);
   }
 };
 

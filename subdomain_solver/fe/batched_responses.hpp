@@ -1,7 +1,7 @@
 #pragma once
 
-#include "subdomain_solver/materials/batched_laws.hpp"
-#include "subdomain_solver/materials/lane_logarithm.hpp"
+#include "subdomain_solver/materials/batched_log_elastic.hpp"
+#include "subdomain_solver/materials/batched_mooney_rivlin.hpp"
 
 namespace abut {
 
@@ -103,6 +103,30 @@ struct NeoHookeanResponse {
     const Real shape = fused(less, Real(3.0 + i1), i1);
     out.energy =
         fused(broadcast<Real>(0.25 * moduli.bulk), volume, Real((0.5 * moduli.shear) * shape));
+  }
+};
+
+struct MooneyRivlinResponse {
+  Moduli moduli;
+  MooneyRivlinNumbers numbers;
+
+  template <int N>
+  [[gnu::always_inline]] void operator()(const TensorLanes<N>& h, LaneResponse<N>& out) const {
+    BatchedMooneyRivlin{moduli, numbers}.respond(h, out.stress, out.energy, out.valid);
+  }
+};
+
+struct HenckyResponse {
+  Moduli moduli;
+
+  template <int N>
+  [[gnu::always_inline]] void operator()(const TensorLanes<N>& h, LaneResponse<N>& out) const {
+    using Real = typename Lanes<N>::Real;
+    const HenckyLanes<N> state(h);
+    const Real all = broadcast<Real>(1.0);  // of the deviator
+    state.stress(moduli, all, out.stress);
+    out.energy = state.energy(moduli, all, Real{});
+    out.valid = state.answers();
   }
 };
 

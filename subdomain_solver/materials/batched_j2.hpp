@@ -2,9 +2,8 @@
 
 #include <limits>
 
-#include "subdomain_solver/materials/batched_laws.hpp"
+#include "subdomain_solver/materials/batched_log_elastic.hpp"
 #include "subdomain_solver/materials/lane_hardening.hpp"
-#include "subdomain_solver/materials/lane_log_strain.hpp"
 
 namespace abut {
 
@@ -20,25 +19,18 @@ struct J2HistoryLanes {
 /// of a modulus. Points that do not yield share no work with those that do but what a batch asks
 /// for, and their bits do not depend on it.
 template <int N>
-struct J2Lanes {
+struct J2Lanes : LogElasticLanes<N> {
   using Real = typename Lanes<N>::Real;
   using Bits = typename Lanes<N>::Bits;
+  using Elastic = LogElasticLanes<N>;
+  using Elastic::cof, Elastic::inverse, Elastic::strain, Elastic::square, Elastic::valid;
 
-  TensorLanes<N> f, cof;    // F; cof F
-  Real inverse;             // 1/det F
-  LogStrainLanes<N> trial;  // of the elastic strain
-  Real square;              // e : e of its deviator e
-  Real flow, left;          // increment of plastic strain; share of e that stays
-  Bits yields, valid;       // valid: where the law has an answer
+  Real flow, left;  // increment of plastic strain; share of the trial deviator that stays
+  Bits yields;
 
   [[gnu::always_inline]] J2Lanes(const Moduli& moduli, const HardeningNumbers& hardening,
                                  const TensorLanes<N>& h, const J2HistoryLanes<N>& before)
-      : f(h), trial(trial_strain(h, before)) {
-    ABUT_UNROLLED (i, 0, 3) f.entry[4 * i] += 1.0;
-    const Real volume = cofactor(f, cof);
-    inverse = 1.0 / volume;
-    valid = trial.valid & (volume > 0.0);
-    square = squared_norm(trial.deviator);
+      : Elastic(h, trial_strain(h, before)) {
     flow = Real{};
     left = broadcast<Real>(1.0);
     const HardeningLanes<N> now(hardening, before.at[6]);
@@ -56,26 +48,14 @@ struct J2Lanes {
 
   /// P = tau F^-T [Pa]
   [[gnu::always_inline]] void stress(const Moduli& moduli, TensorLanes<N>& p) const {
-    const Real pressure = (moduli.bulk * trial.volume) * inverse;
-    const Real scale = (2.0 * moduli.shear) * left * inverse;
-    Real t[6];
-    ABUT_UNROLLED (k, 0, 6) t[k] = scale * trial.deviator.at[k];
-    ABUT_UNROLLED (k, 0, 3) t[k] += pressure;
-    ABUT_UNROLLED (j, 0, 3) {
-      const Real* c = cof.entry + 3 * j;
-      p.entry[3 * j] = fused(t[0], c[0], fused(t[3], c[1], Real(t[5] * c[2])));
-      p.entry[3 * j + 1] = fused(t[3], c[0], fused(t[1], c[1], Real(t[4] * c[2])));
-      p.entry[3 * j + 2] = fused(t[5], c[0], fused(t[4], c[1], Real(t[2] * c[2])));
-    }
+    Elastic::stress(moduli, left, p);
   }
 
   /// [J/m^3] elastic, and what hardening stores.
   [[gnu::always_inline]] Real energy(const Moduli& moduli, const HardeningNumbers& hardening,
                                      const J2HistoryLanes<N>& after) const {
-    const Real volume = trial.volume * trial.volume, shape = left * left * square;
     const HardeningLanes<N> now(hardening, after.at[6]);
-    return fused(broadcast<Real>(0.5 * moduli.bulk), volume,
-                 fused(broadcast<Real>(moduli.shear), shape, now.stored()));
+    return Elastic::energy(moduli, left, now.stored());
   }
 
   /// C_p^-1 changes by F^-1 (b_e - b_e of the trial) F^-T: a difference, as in the scalar law.
@@ -84,7 +64,7 @@ struct J2Lanes {
     after = before;
     if (!some_yield()) return;
     after.at[6] += flow;
-    SymmetricLanes<Real> change = trial.change(Real(2.0 * left - 2.0));
+    SymmetricLanes<Real> change = strain.change(Real(2.0 * left - 2.0));
     const Real scale = inverse * inverse;
     ABUT_UNROLLED (k, 0, 6) change.at[k] *= scale;
     const Real *x = change.at, *c = cof.entry;
@@ -105,8 +85,8 @@ struct J2Lanes {
 
  private:
   /// b_e - I = H^T + (H + F G) F^T, where G is C_p^-1 - I: small where strains are.
-  [[gnu::always_inline]] static LogStrainLanes<N> trial_strain(const TensorLanes<N>& h,
-                                                               const J2HistoryLanes<N>& before) {
+  [[gnu::always_inline]] static SymmetricLanes<Real> trial_strain(const TensorLanes<N>& h,
+                                                                  const J2HistoryLanes<N>& before) {
     TensorLanes<N> f = h;
     ABUT_UNROLLED (i, 0, 3) f.entry[4 * i] += 1.0;
     const Real* g = before.at;
@@ -125,7 +105,7 @@ struct J2Lanes {
           k[i], f.entry[j],
           fused(k[i + 3], f.entry[j + 3], fused(k[i + 6], f.entry[j + 6], h.entry[j + 3 * i])));
     }
-    return LogStrainLanes<N>(e);
+    return e;
   }
 
   /// The equation for the increment, as the scalar law solves it: in one step where hardening is

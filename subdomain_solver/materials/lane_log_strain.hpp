@@ -1,5 +1,6 @@
 #pragma once
 
+#include "subdomain_solver/materials/lane_exponential.hpp"
 #include "subdomain_solver/materials/lane_logarithm.hpp"
 #include "subdomain_solver/materials/lane_principal_axes.hpp"
 #include "subdomain_solver/materials/symmetric_lanes.hpp"
@@ -36,7 +37,7 @@ struct LogStrainLanes {
       const Real square = i < 3 ? shape.square.at[i] - third : shape.square.at[i];
       deviator.at[i] = 0.5 * fused(k[1], d.at[i], Real(k[2] * square));
     }
-    if (any(far_)) set_by_axes();
+    if (any(far_)) set_far(shape, mean);
   }
 
   /// b (exp(factor x deviator) - I) for |factor| <= 2.
@@ -73,20 +74,42 @@ struct LogStrainLanes {
     return found;
   }
 
-  [[gnu::always_inline]] void set_by_axes() {
-    const PrincipalLanes<Real> principal(elastic_);
-    Real strain[3];
-    Bits positive = ~Bits{};
-    ABUT_UNROLLED (a, 0, 3) {
-      positive &= principal.value[a] > -1.0;
-      strain[a] = 0.5 * log1p_lanes<N>(principal.value[a]);
+  /// The axis of the principal value that lies farthest from the others, and the plane across
+  /// [M.157].
+  [[gnu::always_inline]] void set_far(const Deviator<Real>& shape, const Real& mean) {
+    const Real *d = shape.tensor.at, j2 = far_ ? shape.j2 : broadcast<Real>(1.0);
+    const Real root = square_root(j2), s = magnitude(shape.j3) / (j2 * root);
+    // t = 1 + x of t^3 - t = s, between 1 and 2/sqrt(3): a guess to 2e-3, squared three times.
+    Real x = s * fused(broadcast<Real>(-0.2557), s, broadcast<Real>(0.5));
+    ABUT_UNROLLED (step, 0, 3) {
+      const Real value = fused(x, fused(x, Real(3.0 + x), broadcast<Real>(2.0)), Real(-s));
+      x -= value /
+           fused(x, fused(broadcast<Real>(3.0), x, broadcast<Real>(6.0)), broadcast<Real>(2.0));
     }
-    const Real sum = strain[0] + strain[1] + strain[2];
-    ABUT_UNROLLED (a, 0, 3) strain[a] -= (1.0 / 3.0) * sum;
-    SymmetricLanes<Real> whole;
-    principal.with_values(strain, whole);
-    take_where(far_, whole, deviator);
+    const Real size = fused(root, x, root), one = shape.j3 < 0.0 ? -size : size;
+    const Real rest = fused(one, one, Real(-j2)), scale = 1.0 / fused(Real(2.0 * one), one, rest);
+    SymmetricLanes<Real> axis, across;  // its projector less a third; what is left of D across it
+    ABUT_UNROLLED (k, 0, 6) {
+      const Real on = k < 3 ? Real(shape.square.at[k] + rest) : shape.square.at[k];
+      axis.at[k] = scale * fused(one, d[k], on);
+      across.at[k] = fused(Real(-1.5 * one), axis.at[k], k < 3 ? Real(d[k] + 0.5 * one) : d[k]);
+      if (k < 3) axis.at[k] -= 1.0 / 3.0;
+    }
+    const Real apart = square_root(Real(2.0 * squared_norm(across)));
+    const Real low = -0.5 * (one + apart), inverse = 1.0 / (1.0 + low), ratio = apart * inverse;
+    const Real higher = log1p_lanes<N>(ratio);  // ln of the ratio of the two in the plane
+    const Real in_plane = fused(broadcast<Real>(0.5), higher, log1p_lanes<N>(low));
+    const Real along = log1p_lanes<N>(one), difference = 0.5 * (along - in_plane);
+    const Real slope = 0.5 * (apart > 0.0 ? higher / apart : inverse);
+    ABUT_UNROLLED (k, 0, 6) {
+      const Real whole = fused(difference, axis.at[k], Real(slope * across.at[k]));
+      deviator.at[k] = far_ ? whole : deviator.at[k];
+    }
+    const Real sum =
+        fused(broadcast<Real>(1.5), log1p_lanes<N>(mean), Real(0.5 * along + in_plane));
     volume = far_ ? sum : volume;
+    Bits positive = one > -1.0;
+    positive &= low > -1.0;
     valid &= positive | ~far_;
   }
   [[gnu::always_inline]] SymmetricLanes<Real> change_by_axes(const Real& factor) const {

@@ -112,4 +112,16 @@ template <int N>
   return improve_inverse_cube_root(x, improve_inverse_cube_root(x, guess));
 }
 
+/// (1 + x)^(-1/3) - 1: d of (1 + d)^3 (1 + x) = 1. One step of Newton's method restores the digits
+/// that the cube root loses near 1.
+template <int N>
+[[gnu::always_inline]] inline typename Lanes<N>::Real inverse_cube_root_less_one(
+    const typename Lanes<N>::Real& x) {
+  using Real = typename Lanes<N>::Real;
+  const Real root = inverse_cube_root<N>(Real(1.0 + x)), d = root - 1.0;
+  const Real cube = d * fused(d, Real(3.0 + d), broadcast<Real>(3.0));  // (1 + d)^3 - 1
+  const Real residual = fused(cube, x, Real(cube + x));
+  return fused(residual, Real(root * (-1.0 / 3.0)), d);
+}
+
 }  // namespace abut

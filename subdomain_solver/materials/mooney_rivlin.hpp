@@ -1,6 +1,7 @@
 #pragma once
 
 #include "subdomain_solver/materials/isotropic.hpp"
+#include "subdomain_solver/materials/mooney_rivlin_numbers.hpp"
 
 namespace abut {
 
@@ -16,6 +17,7 @@ class MooneyRivlin final : public IsotropicMaterial {
  public:
   /// Throws InputError, with the key's name as `where`, when a number is inadmissible.
   explicit MooneyRivlin(const MooneyRivlinParameters& parameters);
+  MooneyRivlinNumbers numbers() const { return {c10_, c01_}; }
   [[nodiscard]] bool evaluate(const Matrix3& f, std::span<const double> before,
                               std::span<double> after, Need want,
                               PointResponse& out) const override;

@@ -28,6 +28,9 @@ inline std::unique_ptr<const Material> law_named(const std::string& name) {
   if (name == "linear_elastic") return std::make_unique<LinearElastic>(test_moduli, 1.0);
   if (name == "saint_venant_kirchhoff")
     return std::make_unique<SaintVenantKirchhoff>(test_moduli, 1.0);
+  if (name == "mooney_rivlin")
+    return std::make_unique<MooneyRivlin>(MooneyRivlinParameters{0.15, 0.1, test_moduli.bulk, 1.0});
+  if (name == "hencky") return std::make_unique<Hencky>(test_moduli, 1.0);
   if (name == "j2_plasticity")
     return std::make_unique<J2Plasticity>(test_moduli, test_hardening(), 1.0);
   return std::make_unique<NeoHookean>(test_moduli, 1.0);

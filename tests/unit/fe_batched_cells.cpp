@@ -31,9 +31,10 @@ std::vector<BatchCase> cases(const std::vector<std::string>& laws) {
   return out;
 }
 const std::vector<std::string> objective = {"saint_venant_kirchhoff", "neo_hookean",
-                                            "j2_plasticity"};
-const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff", "neo_hookean",
-                                       "j2_plasticity"};
+                                            "mooney_rivlin", "hencky", "j2_plasticity"};
+const std::vector<std::string> laws = {"linear_elastic", "saint_venant_kirchhoff",
+                                       "neo_hookean",    "mooney_rivlin",
+                                       "hencky",         "j2_plasticity"};
 
 /// 9 cells along each edge: several patches in space, batches that are not full.
 constexpr int cells = 9;
