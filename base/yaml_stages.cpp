@@ -56,6 +56,24 @@ YAML::Node placed(const YAML::Node& initial) {
   return out;
 }
 
+bool is_static(const YAML::Node& body) {
+  const std::optional<Found> integrator = child(body, "integrator");
+  return integrator && child(integrator->node, "quasi_static");
+}
+
+/// Bodies that move now and stood in statics before are told so: overlaps are pressed in there.
+void mark_after_statics(const YAML::Node& scene, YAML::Node& out) {
+  const std::optional<Found> bodies = child(scene, "bodies");
+  if (!bodies || !bodies->node.IsMap()) return;
+  for (const auto& pair : bodies->node) {
+    const std::optional<Found> now = child(out["bodies"], pair.first.Scalar());
+    if (!now || !now->node.IsMap() || !is_static(pair.second) || is_static(now->node)) continue;
+    YAML::Node body = now->node;
+    if (!body["initial"].IsMap()) body["initial"] = YAML::Node(YAML::NodeType::Map);
+    body["initial"]["after_statics"] = true;
+  }
+}
+
 YAML::Node merged(const YAML::Node& before, const YAML::Node& own, std::vector<std::string>& path) {
   if (!before.IsMap() || !own.IsMap()) return own;
   const bool other = own.size() == 1 && !child(before, own.begin()->first.Scalar());
@@ -106,6 +124,7 @@ std::optional<NextStage> next_stage(const YAML::Node& scene) {
   // An event ends the stage that waits for it, and no other one.
   const std::optional<Found> own = child(first, "time");
   if (out["time"].IsMap() && !(own && child(own->node, "until"))) out["time"].remove("until");
+  mark_after_statics(scene, out);
   if (rest.size() > 0) out["stages"] = YAML::Clone(rest);
   return NextStage{name, YAML::Dump(out)};
 }

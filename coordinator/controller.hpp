@@ -72,8 +72,8 @@ class Controller {
   /// Who is told what the run's time goes into: "window", "flight", "island" and so on.
   void tell_spans(SpanSink sink) { bodies_.tell_spans(std::move(sink)); }
   const SpanSink& spans() const { return bodies_.spans(); }
-  /// Whether bodies are in their passive forms.
-  bool passive() const { return passive_.active(); }
+  /// Whether bodies stay in their passive forms where the stage ends: those of statics leave them.
+  bool stays_passive();
   /// Called by `run` before every window or flight, and after the last one of a run that has not
   /// failed; may call `save`.
   std::function<void(const Pause&)> between_windows;

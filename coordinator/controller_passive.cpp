@@ -250,6 +250,15 @@ void Controller::go_accurately() {
     if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
 }
 
+/// Forces of contact are found anew by what follows.
+bool Controller::stays_passive() {
+  if (!passive_.active()) return false;
+  if (!passive_.statics() || !passive_.leave(clock_.time())) return true;
+  for (Joint& joint : joints_)
+    if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
+  return false;
+}
+
 GivenUp Controller::given_up() const {
   const PassiveLedger& passive = passive_.ledger();
   return {.statics = passive_.statics(),

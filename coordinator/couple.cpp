@@ -378,7 +378,7 @@ std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
     }
     if (surfaces) {
       set_surfaces(spec, "interfaces." + name, scene, bodies, joint);
-      find_fit(spec.sides, "interfaces." + name, bodies, joint);
+      find_fit(spec.sides, "interfaces." + name, scene, bodies, joint);
       check_start(spec, "interfaces." + name, joint, scene, bodies);
     } else if (const auto* unilateral = std::get_if<UnilateralTransmission>(&spec.transmission)) {
       set_unilateral(spec, *unilateral, scene.schwarz, bodies, joint);
@@ -409,7 +409,7 @@ Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies) 
   refuse_members(joint, bodies, where);
   refuse_tied_ports(spec, bodies, joint);
   set_surfaces(spec, where, scene, bodies, joint);
-  find_fit(spec.sides, where, bodies, joint);
+  find_fit(spec.sides, where, scene, bodies, joint);
   return joint;
 }
 

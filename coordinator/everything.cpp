@@ -102,17 +102,41 @@ void require_one_kind(std::span<const Description* const> bodies, const Document
   }
 }
 
+bool any_folds(std::span<const Description* const> bodies) {
+  return std::ranges::any_of(bodies, [](const Description* body) {
+    return body != nullptr && body->dim > 1 && !body->linear && body->can.passive &&
+           std::ranges::any_of(body->ports,
+                               [](const Port& port) { return !port.geometry.facets.empty(); });
+  });
+}
+
 /// Whether the law is that of a body with itself, as of one that folds.
 bool meets_itself(const Scene& scene, std::span<const Description* const> bodies) {
-  return scene.own_friction() && std::ranges::any_of(bodies, [](const Description* body) {
-           return body != nullptr && body->dim > 1 && !body->linear && body->can.passive;
-         });
+  return scene.own_friction() && any_folds(bodies);
+}
+
+/// Contact of bodies with themselves alone: said, and of a body that can come upon itself.
+void validate_self(const Scene& scene, std::span<const Description* const> bodies,
+                   const Document& document) {
+  if (!document.has("contact.self") && !document.has("contact.self_friction"))
+    throw InputError("is missing", document.where(std::string(everything_path)),
+                     "Write contact: {everything: {}}, contact: {self: true}, or leave contact "
+                     "out: bodies touch themselves by default.");
+  const bool all_known = std::ranges::none_of(bodies, [](const Description* body) {
+    return body == nullptr;
+  });
+  if (!scene.contact->self || !all_known || any_folds(bodies)) return;
+  throw InputError("has no effect: no body that strains finitely has a port with facets",
+                   document.where("contact.self"),
+                   "Give a body another law than linear_elastic and a port on its surface, as "
+                   "ports: {skin: boundary}, or leave it out.");
 }
 
 }  // namespace
 
 void validate_everything(const Scene& scene, std::span<const Description* const> bodies,
                          const Document& document) {
+  if (scene.contact && scene.everything() == nullptr) validate_self(scene, bodies, document);
   if (scene.everything() == nullptr) return;
   InputErrors errors;
   const std::string where = document.where(std::string(everything_path));

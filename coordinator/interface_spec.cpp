@@ -99,9 +99,6 @@ void SceneContactSpec::fields(Fields& f) {
   f.optional("self_friction", self_friction, "",
              "Coulomb's coefficient of bodies on themselves; usual: that of everything, or 0",
              between(0.0, rough_friction));
-  f.check(everything || !self || self_friction, "everything", "is missing",
-          "Write contact: {everything: {}}, contact: {self: false}, or leave contact out: bodies "
-          "touch themselves by default.");
   f.idle(!self, "self_friction", "bodies do not touch themselves");
 }
 

@@ -102,7 +102,11 @@ void Narrator::found(const Joint& joint, double time) {
 }
 
 void Narrator::pressed_in(const Joint& joint, double time) {
-  if (joint.fit == 0.0 || joint.role.fitted >= 0) return;
+  const auto moves = [this](const Side& side) {
+    const Description& body = bodies_.describe(side.body);
+    return !body.quasi_static && !std::isinf(body.mass);
+  };
+  if (joint.fit == 0.0 || joint.role.fitted >= 0 || std::ranges::any_of(joint.sides, moves)) return;
   tell({RunEvent::Kind::warning,
         time,
         joint.name,

@@ -212,11 +212,13 @@ void RoleReader::assign() {
     entry.context = {};
     entry.context.others_touch = scene_.everything() != nullptr;
     const std::string initial = path_of(scene_.bodies[b].first) + ".initial.";
-    const BodySpec* own =
-        document_.has(initial + "adjust") || document_.has(initial + "interference") ? spec(b)
-                                                                                     : nullptr;
+    const bool says = std::ranges::any_of(
+        std::array{"adjust", "interference", "after_statics"},
+        [&](const char* key) { return document_.has(initial + key); });
+    const BodySpec* own = says ? spec(b) : nullptr;
     entry.adjusts = own != nullptr && own->initial.adjust;
     entry.fits = own != nullptr && own->initial.interference;
+    entry.stood = own != nullptr && own->initial.after_statics;
     entry.context.mesh_digest = digest_for(entry, b);
   }
   compare_bodies();

@@ -51,6 +51,7 @@ struct BodyEntry {
   std::string like;       // body that it has the rest from; the document has written it out
   bool adjusts = false;   // its own specification has initial: {adjust: true}
   bool fits = false;      // ... initial: {interference: ...}
+  bool stood = false;     // ... initial: {after_statics: true}
   BodyContext context;    // what the interfaces make of it
   void fields(Fields& f);
 };

@@ -14,20 +14,21 @@ namespace abut {
 
 namespace {
 
-/// Bodies without inertia take an overlap at once: nobody draws it for another reason.
-bool statics_alone(const Joint& joint, const Bodies& bodies) {
-  const auto is_static = [&bodies](const Side& side) {
+/// Bodies without inertia take an overlap at once, or have taken it in the stages before: nobody
+/// draws it for another reason.
+bool statics_alone(const Scene& scene, const Joint& joint, const Bodies& bodies) {
+  const auto is_static = [&](const Side& side) {
     const Description& body = bodies.describe(side.body);
-    return body.quasi_static || std::isinf(body.mass);
+    return body.quasi_static || std::isinf(body.mass) || scene.bodies[side.body].second.stood;
   };
   return std::ranges::all_of(joint.sides, is_static);
 }
 
 }  // namespace
 
-void find_fit(const std::array<std::string, 2>& sides, const std::string& where,
+void find_fit(const std::array<std::string, 2>& sides, const std::string& where, const Scene& scene,
               const Bodies& bodies, Joint& joint) {
-  if (joint.role.fitted < 0 && !statics_alone(joint, bodies)) return;
+  if (joint.role.fitted < 0 && !statics_alone(scene, joint, bodies)) return;
   const auto side = [&](std::size_t s) {
     return named_surface(sides[s], bodies.describe(joint.sides[s].body), joint.sides[s].port);
   };
@@ -54,6 +55,15 @@ void check_fits(const Scene& scene, std::span<const Joint> joints) {
     throw InputError("has no effect: the body overlaps nothing that it touches",
                      "bodies." + scene.bodies[b].first + ".initial.interference",
                      "Draw the body with its interference, or leave the key out.");
+  }
+}
+
+void check_nothing_before(const Scene& scene) {
+  for (const auto& [name, entry] : scene.bodies) {
+    if (!entry.stood) continue;
+    throw InputError("is true, but nothing was before: it is written into stages",
+                     "bodies." + name + ".initial.after_statics",
+                     "Leave it out, and write statics and what follows them as stages.");
   }
 }
 

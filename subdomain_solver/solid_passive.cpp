@@ -72,7 +72,8 @@ void SolidInterior::find_passive() {
   if (description_.quasi_static && (parts_.reduced != nullptr || joined || description_.dim == 1))
     return;
   if (modal && parts_.reactions) return;
-  if (parts_.pressed_over) return;  // its rows know of distances alone, not of what is wanted
+  // Its rows know of distances alone, not of what is wanted and still to come.
+  if (parts_.pressed_over.value_or(0.0) > 0.0 && !description_.quasi_static) return;
   able_.passive = this;
   description_.can.passive = true;
   description_.can.only_passive = parts_.massive_surface && !description_.quasi_static;

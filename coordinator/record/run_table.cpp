@@ -157,10 +157,15 @@ std::string RunTable::energies(const Measures& measures) const {
       rows.back().push_back(fmt::format("{:.5g}", taken));
   const auto drift = measures.values.find("energy.total.relative_drift_end");
   const bool known = drift != measures.values.end() && std::isfinite(drift->second);
-  const auto own = [](const Energy& e) { return e.total() + e.dissipated - e.external_work; };
+  const auto held = [](const Energy& e) { return e.total() + e.dissipated; };
+  const auto own = [&held](const Energy& e) { return held(e) - e.external_work; };
   const double change = own(last) - own(first), taken = up.friction + up.joules();
   const double left = change == 0.0 ? 1.0 : (change + taken) / change;  // of the drift
-  rows.back().push_back(known ? fmt::format("{:.2g} %", 100.0 * left * drift->second) : "-");
+  // Of bodies that begin at rest and are damped little is left of what was done on them.
+  const double put_in = held(first) + std::max(0.0, last.external_work - first.external_work);
+  const double scale = measures.total_energy_scale;
+  const double part = scale > 0.0 && put_in > scale ? scale / put_in : 1.0;
+  rows.back().push_back(known ? fmt::format("{:.2g} %", 100.0 * left * part * drift->second) : "-");
   for (std::vector<std::string>& cells : rows) cells.resize(rows[0].size());
   return text_table(rows) + "\n";
 }

@@ -25,6 +25,7 @@
 #include "coordinator/trust.hpp"
 #include "coordinator/unit_doubts.hpp"
 #include "coordinator/verbs/placed_scene.hpp"
+#include "coordinator/wanted_fit.hpp"
 
 namespace abut {
 
@@ -130,6 +131,7 @@ int check_verb(const CheckCommand& command) {
   {
     const Placement here{nullptr, launch_local(scene, document)};
     estimate = validate_all(scene, document, here, true).estimate;
+    check_nothing_before(scene);
     const std::vector<const Description*> bodies = here.descriptions();
     const std::vector<std::optional<BodyFacts>> facts = local_facts(scene, document);
     fmt::print("{}: valid\n{}", command.scene,

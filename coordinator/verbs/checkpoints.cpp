@@ -106,7 +106,7 @@ void Checkpoints::write(const Pause& pause, Controller& controller) {
   kept.time = pause.time;
   kept.windows = pause.windows;
   kept.stage_ends = pause.last && keeping_.more;
-  if (kept.stage_ends && controller.passive())
+  if (kept.stage_ends && controller.stays_passive())
     throw RunError("ends while bodies go passively, where no other scheme can go on", "the stage",
                    "Let it end at another time");
   kept.run = text_of(controller.save());

@@ -10,6 +10,7 @@
 #include "coordinator/record/text_file.hpp"
 #include "coordinator/run_directory.hpp"
 #include "coordinator/verbs/recorded_run.hpp"
+#include "coordinator/wanted_fit.hpp"
 
 namespace abut {
 
@@ -28,6 +29,7 @@ int run_verb(const RunCommand& command) {
   std::optional<RunPlan> plan;
   try {
     plan = plan_run(std::move(document), options, interrupts);
+    check_nothing_before(plan->scene);
     for (const Description* body : plan->placement.descriptions())
       log_info(fmt::format("{}: {}", body->name,
                            quantities_in(declared_units(plan->scene.units), body->model)));

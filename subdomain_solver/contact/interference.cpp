@@ -1,6 +1,7 @@
 #include "subdomain_solver/contact/interference.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "base/index.hpp"
@@ -50,6 +51,13 @@ void Interference::settle(std::size_t partner, double time, double force) {
   state_.work[partner] += 0.5 * (state_.force[partner] + force) * (state_.left[partner] - now);
   state_.left[partner] = now;
   state_.force[partner] = force;
+}
+
+void Interference::end() {
+  state_.begun = 1.0;
+  state_.begin = -std::numeric_limits<double>::infinity();
+  std::ranges::fill(state_.left, 0.0);
+  std::ranges::fill(state_.force, 0.0);
 }
 
 double Interference::work() const {

@@ -24,6 +24,8 @@ class Interference {
   double left(std::size_t partner, double time) const;
   /// The substep that ends at a time is done, with so much force [N] on the partner's rows.
   void settle(std::size_t partner, double time, double force);
+  /// All of it is there from now on.
+  void end();
   double work() const;  // [J] on the bodies, since the run began
 
   void state(Archive& archive);

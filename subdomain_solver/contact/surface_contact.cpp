@@ -64,6 +64,7 @@ void SurfaceContact::state(Archive& archive) {
 void SurfaceContact::let_go() {
   for (std::vector<double>* list : {&pressed_, &reactions_, &turned_, &slid_, &shears_, &anchored_})
     std::ranges::fill(*list, 0.0);
+  if (interference_) interference_->end();
 }
 
 std::span<double> SurfaceContact::pressed(const Meeting& m) {

@@ -219,6 +219,9 @@ void InitialSpec::fields(Fields& f) {
       "interference", interference,
       "wanted overlap with what the body touches (press fit, preload): it grows from "
       "nothing to what is drawn; the body finds its contacts");
+  f.optional("after_statics", after_statics, "",
+             "written into stages, not into scenes: the body stood in statics before, and what "
+             "overlaps has been pressed in there");
   f.check(!interference || !adjust, "interference", "stands beside adjust, which takes it away",
           "Leave one of them out.");
 }

@@ -54,6 +54,7 @@ struct InitialSpec {
   bool adjust = false;       // the mesh is moved out of what it may touch, before there is stress
   double adjust_gaps = 0.0;  // [m]
   std::optional<InterferenceSpec> interference;
+  bool after_statics = false;  // stages say so
   void fields(Fields& f);
 };
 struct SupportsSpec {

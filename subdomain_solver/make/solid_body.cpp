@@ -104,13 +104,19 @@ std::optional<double> interference_of(const BodySpec& spec, bool massive_surface
         "which presses nothing in",
         place.where("initial.interference"),
         "Use a finer mesh, or give the key to the body that it is pressed into.");
-  if (over == 0.0 && !spec.integrates(SchemeKind::statics))
+  if (over == 0.0 && !spec.integrates(SchemeKind::statics) && !spec.initial.after_statics)
     throw InputError(
         "is 0, but the body has inertia, which an overlap that is there at once "
         "would strike",
         place.where("initial.interference.over"),
-        "Give a time of many steps, some periods of the body.");
+        "Give a time of many steps, some periods of the body, or let a stage of statics take it.");
   return over;
+}
+
+std::string pressed_in_words(double over, bool statics) {
+  if (over == 0.0) return statics ? ", pressed in at once" : ", pressed in by statics before";
+  return fmt::format(", pressed in over {:g} s, {}", over,
+                     statics ? "or at once where it goes passively" : "without a passive form");
 }
 
 void check_threads(const FeModelSpec& fe, FeModel& model, const Place& place) {
@@ -171,8 +177,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   };
   parts.rung += on_file(fe, notes) + adjusted;
   if (parts.pressed_over)
-    parts.rung +=
-        fmt::format(", pressed in over {:g} s, without a passive form", *parts.pressed_over);
+    parts.rung += pressed_in_words(*parts.pressed_over, spec.integrates(SchemeKind::statics));
   if (parts.massive_surface)
     parts.rung += ", its surface has mass, lumped: contact in its passive form";
   if (const std::string why = spec.why_general(); !why.empty())

@@ -77,6 +77,29 @@ TEST_F(RunTableText, TellsWhatPassiveWindowsTook) {
       << table.text(measures);
 }
 
+/// From rest 100 J are done on bodies that hold 40 J at most and keep 10: 90 % is lost, of what
+/// there was at once 225 %.
+TEST_F(RunTableText, TellsTheErrorOfAllThatWasPutIn) {
+  RunTable damped;
+  damped.on_start(start);
+  const auto both = [&damped](double time, const Energy& energy) {
+    std::vector<Response> responses(2);
+    for (Response& response : responses) {
+      response.records = {{time, energy, {}}};
+      response.records[0].columns = {0.0, 0.0};
+    }
+    damped.on_window({{0, time, time}, responses, {}});
+  };
+  both(0.0, {});
+  both(1.0, {.kinetic = 3.0, .stored = 2.0, .external_work = 50.0});
+  measures.total_energy_scale = 40.0;
+  measures.set("energy.total.relative_drift_end", (10.0 - 100.0) / 40.0);
+  EXPECT_NE(damped.text(measures).find("  -90 %\n"), std::string::npos) << damped.text(measures);
+  measures.total_energy_scale = 200.0;  // what there was in between is more than what was put in
+  measures.set("energy.total.relative_drift_end", (10.0 - 100.0) / 200.0);
+  EXPECT_NE(damped.text(measures).find("  -45 %\n"), std::string::npos) << damped.text(measures);
+}
+
 TEST_F(RunTableText, TellsTenContactsAndHowManyMoreThereAre) {
   start.interfaces.assign(12, InterfaceInfo{.name = "impact"});
   RunTable many;
