@@ -15,8 +15,8 @@ namespace abut {
 namespace {
 
 /// Beside those of bodies, as body_choices() has them.
-constexpr std::array<std::string_view, 3> stage_choices = {
-    "schwarz.accelerator", "output.checkpoint", "time.until"};
+constexpr std::array<std::string_view, 3> stage_choices = {"schwarz.accelerator",
+                                                           "output.checkpoint", "time.until"};
 
 bool fits(const std::vector<std::string>& path, std::string_view pattern) {
   return std::ranges::equal(path, split_path(pattern), [](const auto& step, const auto& part) {

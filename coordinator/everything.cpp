@@ -122,9 +122,8 @@ void validate_self(const Scene& scene, std::span<const Description* const> bodie
     throw InputError("is missing", document.where(std::string(everything_path)),
                      "Write contact: {everything: {}}, contact: {self: true}, or leave contact "
                      "out: bodies touch themselves by default.");
-  const bool all_known = std::ranges::none_of(bodies, [](const Description* body) {
-    return body == nullptr;
-  });
+  const bool all_known =
+      std::ranges::none_of(bodies, [](const Description* body) { return body == nullptr; });
   if (!scene.contact->self || !all_known || any_folds(bodies)) return;
   throw InputError("has no effect: no body that strains finitely has a port with facets",
                    document.where("contact.self"),

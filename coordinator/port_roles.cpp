@@ -212,9 +212,9 @@ void RoleReader::assign() {
     entry.context = {};
     entry.context.others_touch = scene_.everything() != nullptr;
     const std::string initial = path_of(scene_.bodies[b].first) + ".initial.";
-    const bool says = std::ranges::any_of(
-        std::array{"adjust", "interference", "after_statics"},
-        [&](const char* key) { return document_.has(initial + key); });
+    const bool says =
+        std::ranges::any_of(std::array{"adjust", "interference", "after_statics"},
+                            [&](const char* key) { return document_.has(initial + key); });
     const BodySpec* own = says ? spec(b) : nullptr;
     entry.adjusts = own != nullptr && own->initial.adjust;
     entry.fits = own != nullptr && own->initial.interference;

@@ -10,8 +10,9 @@
 namespace abut {
 
 /// Interference that the scene wants [m] (Joint::fit): that of a body that is pressed in, or of
-/// bodies without inertia or that had none in the stage before. `sides`: their names; `where`: the interface's key. Throws InputError
-/// where a body that is to be pressed in does not find the contact.
+/// bodies that have no inertia, or had none in the stage before. `sides`: their names; `where`: the
+/// interface's key. Throws InputError where a body that is to be pressed in does not find the
+/// contact.
 void find_fit(const std::array<std::string, 2>& sides, const std::string& where, const Scene& scene,
               const Bodies& bodies, Joint& joint);
 

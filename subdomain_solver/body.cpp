@@ -99,48 +99,13 @@ std::vector<std::byte> Body::checkpoint() {
   Archive archive = Archive::writer(bytes, Archive::Form::named);
   std::string scheme = interior_->traits().scheme;
   bool statics = describe().quasi_static;
+  std::string basis = interior_->traits().basis;
   archive.field("scheme", scheme);
   archive.field("statics", statics);
+  archive.field("basis", basis);
   interior_->state(archive);
   archive.finish();
   return bytes;
-}
-
-/// What another model or mesh of the body has handed over. Throws RunError.
-void Body::take_from(Archive& archive) {
-  HandOver handed;
-  handed.state(archive);
-  archive.finish();
-  const Description& own = describe();
-  const std::string of = fmt::format("body '{}'", own.name);
-  if (interior_->able().successor == nullptr)
-    throw RunError("is of a kind that takes over from no other", of,
-                   "Give it fe, modal or rigid in all stages, and as fe in one dimension another "
-                   "law than linear_elastic");
-  if (handed.columns != own.columns)
-    throw RunError("tells of other supports than the stage before", of,
-                   "Give the body supports of the same names in all stages");
-  interior_->able().successor->take_from(handed);
-}
-
-/// Throws RunError.
-void Body::read_checkpoint(std::span<const std::byte> bytes) {
-  Archive archive = Archive::reader(bytes, Archive::Form::named);
-  std::string scheme;
-  bool statics = false;
-  archive.field("scheme", scheme);
-  if (scheme == handed_over) return take_from(archive);
-  archive.field("statics", statics);
-  const std::string& own = interior_->traits().scheme;
-  if (scheme != own && interior_->able().successor == nullptr)
-    throw RunError(fmt::format("cannot go on by {} where {} has left it", own, scheme),
-                   fmt::format("body '{}'", describe().name),
-                   "Give its integrator the same name in all stages");
-  if (scheme == own)
-    interior_->state(archive);
-  else
-    interior_->able().successor->take_over(archive, statics);
-  archive.finish();
 }
 
 void Body::resume(std::span<const std::byte> bytes) {

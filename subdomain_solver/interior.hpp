@@ -73,8 +73,11 @@ class Obstructed {
 /// A body that goes on where the same body has come to by another scheme.
 class Successor {
  public:
-  /// Reads that state. `statics`: it stood in balance. Throws RunError where it cannot go on.
-  virtual void take_over(Archive& archive, bool statics) = 0;
+  /// What has left the state: the body's own scheme, statics, in which it stood in balance, or
+  /// another scheme of motion.
+  enum class Before { own, statics, motion };
+  /// Reads that state, in which contact and ties may press. Throws RunError where it cannot go on.
+  virtual void take_over(Archive& archive, Before before) = 0;
   /// The same from another model or mesh of the body. Throws RunError.
   virtual void take_from(const HandOver& handed) = 0;
 
@@ -101,6 +104,7 @@ class Interior {
     double effort = 0.0;                 // parts of 10 ms that a substep takes, about
     bool slow = false;                   // a single substep may take seconds
     std::string scheme;  // what moves it: states of others are not read; empty: always the same
+    std::string basis;        // what its coordinates mean beside the mesh; empty: places of nodes
     bool looks_ahead = true;  // where it goes without its partners is worth the way
   };
 

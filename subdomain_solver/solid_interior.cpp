@@ -1,6 +1,7 @@
 #include "subdomain_solver/solid_interior.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -10,9 +11,9 @@
 #include "subdomain_solver/bars/compressed_bar.hpp"
 #include "subdomain_solver/contact/point_contact.hpp"
 #include "subdomain_solver/contact/surface_contact.hpp"
+#include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/port_geometry.hpp"
 #include "subdomain_solver/solid_fields.hpp"
-#include "subdomain_solver/materials/crush_guard.hpp"
 #include "subdomain_solver/stabilisation_measures.hpp"
 #include "subdomain_solver/time/inertia.hpp"
 #include "subdomain_solver/time/massless_layer.hpp"
@@ -71,6 +72,9 @@ void SolidInterior::find_traits() {
   }
   const std::string& words = parts_.scheme.words;
   traits_.scheme = words.substr(0, words.find(','));
+  if (parts_.reduced != nullptr && parts_.rigid == nullptr)
+    traits_.basis =
+        std::array{"lumped", "averaged", "consistent"}[index(static_cast<int>(parts_.scheme.mass))];
   traits_.effort = parts_.model->mesh().cell_count() / usual_solid_work;
   // It may factor a large matrix.
   traits_.slow = !explicit_in_time && description_.dofs >= long_factorisation;

@@ -93,7 +93,7 @@ class SolidInterior final : public Interior,
   const std::vector<std::int32_t>* reacting(std::size_t port, std::size_t partner) const override {
     return surfaces_ != nullptr ? surfaces_->reacting(port, partner) : nullptr;
   }
-  void take_over(Archive& archive, bool statics) override;
+  void take_over(Archive& archive, Before by) override;
   void take_from(const HandOver& handed) override;
   std::vector<double> amplitudes_of(std::vector<double> nodes) const;
   std::optional<Failed> settle_swap();

@@ -10,14 +10,21 @@
 
 namespace abut {
 
-/// From statics: displacements, history and what was pressed stay, accelerations are none, since
+/// From its own scheme: all of it; what holds it is given with the first window. From statics:
+/// displacements, history and what was pressed stay, accelerations are none, since
 /// all forces are in balance, and velocities are those that the body was built with, its
 /// initial.velocity: work is done to give them. A massless surface stays where contact has pressed
-/// it. From another scheme of motion: displacements and velocities stay.
-void SolidInterior::take_over(Archive& archive, bool statics) {
+/// it. From another scheme of motion: displacements and velocities stay, and
+/// accelerations where forces act on ports, which the new scheme does not know of.
+void SolidInterior::take_over(Archive& archive, Before by) {
+  const bool statics = by == Before::statics;
   const std::string of = fmt::format("body '{}'", description_.name);
   const std::vector<double> start = state_.motion.v;
   state(archive);
+  if (by == Before::own) {
+    stands_ = state_.begun && !is_passive();
+    return;
+  }
   if (surfaces_ == nullptr) archive.leave_rest();  // contact in passive form finds its forces anew
   Motion& motion = state_.motion;
   if (description_.quasi_static && !statics)
@@ -32,11 +39,17 @@ void SolidInterior::take_over(Archive& archive, bool statics) {
   motion.step = 0.0;
   if (std::optional<Failed> failed = parts_.scheme.integrator->begin(motion, state_.time))
     throw RunError("cannot begin the stage: " + failed->detail, of, "Give another integrator");
-  stands_ = statics;
-  if (!statics) return;
+  // Its beginning knows of no forces on ports.
+  const bool held = std::ranges::any_of(state_.port_force, [](double f) { return f != 0.0; });
+  stands_ = statics || held;
+  if (!stands_) return;
   motion.q = before.q;
   motion.force = before.force;
   motion.stored = before.stored;
+  if (!statics) {
+    motion.a = before.a;
+    return;
+  }
   std::ranges::fill(motion.a, 0.0);
   motion.external_work += parts_.scheme.integrator->kinetic(motion);  // of what sets it in motion
 }

@@ -119,7 +119,10 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   check_statics(spec, place, nodes, constraints.supports, {});
   std::vector<int> supports;
   for (const Prescribed& p : constraints.supports) supports.push_back(p.dof);
-  const MassForm form = mass_form(*spec.integrator);
+  // Modes after statics are those of the statics, whose state is in their amplitudes.
+  BodySpec stepped = spec;
+  if (spec.initial.after_statics) stepped.lump_mass();
+  const MassForm form = mass_form(*stepped.integrator);
   const ModalBasis basis = reduce(nodes, supports, dofs_of(nodes.mesh(), ports), form,
                                   wanted_of(modal), place.where("model.modal"));
   if (basis.frequencies.size() == 0) {
@@ -136,10 +139,12 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))
     parts.problem->loads.push_back(std::make_unique<LiftedLoad>(std::move(load), *map, nodal));
   parts.rung = words_of(basis) + on_file(modal, notes) + adjusted;
+  if (form != mass_form(*spec.integrator))
+    parts.rung += ", of lumped mass as in the statics before";
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
   parts.scheme =
-      make_scheme(spec, place, *parts.problem, ports, [&model] { return model->stable_step(); });
+      make_scheme(stepped, place, *parts.problem, ports, [&model] { return model->stable_step(); });
   parts.reduced = std::move(model);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<ModalReactions>(

@@ -73,6 +73,110 @@ stages:
 """
 
 
+BAR_FORCE = 2.5e5  # [N] = E A d / (2 L): 1e9 Pa, 0.25 m^2, 1 mm of interference, bars of 0.5 m
+
+
+def pressed_bars(start: str, schemes: tuple, statics="quasi_static: {step: 0.25}", then=(),
+                 loaded=False, modal=False) -> str:
+    """Two bars between walls, drawn 1 mm into each other, or the second one a load on the first."""
+    def body(name, at, cells, wall, tip, more, reduced=False):
+        kind = "modal: {modes: 3, " if reduced else "fe: {"
+        wall = f'wall: {{on: {wall}, x: "0"}}, ' if wall else ""
+        return f"""
+  {name}:
+    model: {{{kind}dimension: 2, mesh: {{rectangle: {{lengths: [0.5, 0.25],
+                elements: {cells}}}}}}}}}
+    material: {{linear_elastic: {{youngs_modulus: 1.0e9, poissons_ratio: 0.0, density: 1000.0}}}}
+    integrator: {{{statics}}}
+    initial: {{position: [{at}, 0.0]{more}}}
+    constraints: {{{wall}base: {{on: bottom, y: "0"}}}}
+    ports: {{tip: {{side: {tip}}}}}"""
+
+    def stage(these):
+        names = zip(("low", "up"), these)
+        return "\n    bodies:" + "".join(f"\n      {name}: {{integrator: {{{each}}}}}"
+                                         for name, each in names)
+
+    press = """
+    loads: {press: {on: right, traction: ["-1.0e6 * min(t / 0.5, 1)", "0"]}}"""
+    upper = body("up", 0.5, [12, 4], "", "left", "") + press
+    if not loaded:
+        upper = body("up", 0.499, [12, 4], "right", "left", "")
+    return f"""time: {{end: 1.0, window: 0.25}}
+bodies:{body("low", 0.0, [9, 3], "left", "right", start, modal)}{upper}
+interfaces: {{meet: {{sides: [low.tip, up.tip], contact: {{}}}}}}
+output: {{checkpoint: {{windows: 50}}}}
+stages:
+  go:
+    time: {{end: 1.001, window: 1.0e-5}}
+{stage(schemes)}
+  on:
+    time: {{end: 1.002}}{stage(then) if then else ""}
+"""
+
+
+class Fits(SystemTest):
+    """Interference that statics have pressed in stays so: there is nothing to strike or to grow."""
+
+    def run_scene(self, text, *options):
+        path, out = self.folder / "fit.yaml", self.folder / "fit"
+        path.write_text(text, encoding="utf-8")
+        return self.abut("run", str(path), "--out", str(out), "--force", "--local", *options), out
+
+    def test_fits_of_statics_stay_as_they_are(self):
+        explicit, newmark = "central_difference: {step: 1.0e-5}", "newmark: {step: 1.0e-5}"
+        for start, schemes in itertools.product(
+                [", interference: {over: 0}", "", ", interference: {over: 0.5}"],
+                [(explicit, explicit), (newmark, newmark), (explicit, newmark)]):
+            with self.subTest(start=start, schemes=schemes):
+                done, out = self.run_scene(pressed_bars(start, schemes))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                with open(out / "history.csv", encoding="utf-8") as file:
+                    rows = list(csv.DictReader(file))
+                self.assertEqual(len(rows), 1 + 4 + 200)
+                for row in rows[5:]:  # the tolerance of the sweeps, 1e-6, is of the deformation
+                    self.assertAlmostEqual(float(row["low.tip.force_x [N]"]) / -BAR_FORCE, 1.0,
+                                           delta=1.0e-8)
+
+    def test_a_load_presses_on_from_stage_to_stage(self):
+        """Of modes or cells below; the second stage of motion changes nothing, or the schemes."""
+        explicit, newmark = "central_difference: {step: 1.0e-5}", "newmark: {step: 1.0e-5}"
+        alpha = "hht_alpha: {step: 1.0e-5}"
+        for modal, first, then in itertools.chain(
+                itertools.product([False], (explicit, newmark),
+                                  ((), (explicit,) * 2, (alpha,) * 2)),
+                itertools.product([True], (newmark,), ((), (alpha,) * 2))):
+            with self.subTest(modal=modal, first=first, then=then):
+                done, out = self.run_scene(
+                    pressed_bars("", (first,) * 2, then=then, loaded=True, modal=modal))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                with open(out / "history.csv", encoding="utf-8") as file:
+                    rows = list(csv.DictReader(file))
+                moving = [float(row["low.tip.force_x [N]"]) / -BAR_FORCE for row in rows
+                          if float(row["time [s]"]) > 1.0]
+                self.assertEqual(len(moving), 200)
+                # The upper bar is held by contact alone: what stabilises bore some 1e-5.
+                self.assertLess(max(abs(force - 1.0) for force in moving), 1.0e-4)
+
+    def test_modes_of_another_mass_are_refused(self):
+        text = pressed_bars("", ("newmark: {step: 1.0e-5, mass: lumped}",) * 2, loaded=True,
+                            statics="newmark: {step: 0.25}", modal=True)
+        done, _ = self.run_scene(text)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("body 'low': goes on with modes of lumped mass, and its state is of "
+                      "averaged mass. Give its integrator the same mass in all stages", done.stderr)
+
+    def test_bodies_of_no_stage_have_no_statics_before(self):
+        text = pressed_bars(", after_statics: true", ("newmark: {step: 1.0e-5}",) * 2)
+        for words in (("run", "--out", str(self.folder / "not")), ("check", "--probe", "0")):
+            path = self.folder / "fit.yaml"
+            path.write_text(text, encoding="utf-8")
+            done = self.abut(words[0], str(path), *words[1:])
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("bodies.low.initial.after_statics: is true, but nothing was before",
+                          done.stderr)
+
+
 class Rest(SystemTest):
     def check(self, *kind):
         path = self.folder / "scene.yaml"

@@ -47,7 +47,10 @@ TEST(Stages, HaveTheirKeysOverThoseOfTheScene) {
   const std::string expected = R"(units: SI
 time: {begin: 1 s, end: 2 s, window: 1e-3}
 bodies:
-  a: {integrator: {central_difference: {step: 1e-3}}, ports: {tip: {side: right}}}
+  a:
+    integrator: {central_difference: {step: 1e-3}}
+    initial: {after_statics: true}
+    ports: {tip: {side: right}}
   b: {like: a, equations: null, ports: {tip: {side: left}}}
   c: {copies: {grid: {count: [2, 1, 1], spacing: [1, 1, 1]}}, integrator: {newmark: {step: 0.1}}}
 interfaces: {i: {sides: [a.tip, b.tip], contact: {friction: "0.3"}}}
@@ -57,11 +60,14 @@ stages:
 )";
   EXPECT_EQ(keys_that_differ(*hit, expected), std::vector<std::string>{});
   EXPECT_TRUE(hit->has("bodies.b.integrator.central_difference")) << "b is like a";
+  EXPECT_TRUE(hit->has("bodies.b.initial.after_statics"));
+  EXPECT_FALSE(hit->has("bodies.c_1.initial.after_statics")) << "it moved before";
   EXPECT_TRUE(hit->has("bodies.c_1.integrator.newmark") && hit->has("bodies.c_2"));
   const std::optional<Document> rest = hit->next_stage();
   ASSERT_TRUE(rest);
   EXPECT_TRUE(rest->has("bodies.a.integrator.newmark"));
   EXPECT_FALSE(rest->has("bodies.a.integrator.central_difference")) << "another choice, instead";
+  EXPECT_TRUE(rest->has("bodies.a.initial.after_statics")) << "as long as it moves";
   EXPECT_FALSE(rest->has("stages"));
   EXPECT_FALSE(rest->next_stage());
 }
