@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/refusal.hpp"
 #include "tests/support/runs.hpp"
 
 namespace abut::self_contact_tests {
@@ -86,6 +87,22 @@ TEST(SelfContact, OfABodyAloneHasTheLawOfEverything) {
     expect_apart(*result, "shoe");
     EXPECT_EQ(result->end.given_up.friction > 0.0, friction > 0.0);
   }
+}
+
+/// It may be the only contact that a scene says, and must be of a body that can fold.
+TEST(SelfContact, MayBeSaidAlone) {
+  const std::string scheme = "newmark: {step: 0.025}";
+  const std::vector<SolidText> bodies = {horseshoe("neo_hookean", -1.0, scheme)};
+  const auto said = run_solids(3.0, 0.05, bodies, "", "contact: {self: true}\n");
+  expect_apart(*said, "shoe");
+  EXPECT_EQ(said->end.body_hashes, run_solids(3.0, 0.05, bodies, "")->end.body_hashes);
+  const auto refused = [&](const std::string& law, const char* contact) {
+    return refusal([&] { run_solids(3.0, 0.05, {horseshoe(law, -1.0, scheme)}, "", contact); });
+  };
+  expect_words(refused("linear_elastic", "contact: {self: true}\n"),
+               {"contact.self", "has no effect", "no body that strains finitely"});
+  expect_words(refused("neo_hookean", "contact: {}\n"),
+               {"contact.everything", "is missing", "contact: {self: true}"});
 }
 
 /// Nothing is given up where a body does not come upon itself, and small strains do not fold one.
