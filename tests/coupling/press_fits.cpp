@@ -20,8 +20,7 @@ struct Bars {
   char lower = 'I', upper = 'I';  // schemes
   bool key_above = false, upper_first = false;
   double friction = 0.0, over = 0.1, end = 0.2, deep = 0.01;
-  std::string key = {};    // in place of the usual one
-  std::string scene = {};  // more of it
+  std::string key = {};  // in place of the usual one
 
   static constexpr double stiff_below = 1.0e6, stiff_above = 2.0e6;  // [Pa]
   double breadth() const { return dim == 2 ? 0.4 : 0.4 * 0.3; }
@@ -53,8 +52,7 @@ struct Bars {
     return run_solids(end, 1.0e-3, bodies,
                       fmt::format("  fit: {{sides: [lower.face, upper.face], contact: {{friction: "
                                   "{}}}}}\n",
-                                  friction),
-                      scene);
+                                  friction));
   }
 };
 
@@ -101,28 +99,6 @@ TEST(PressFits, StaticsHoldBarsInEquilibrium) {
           EXPECT_TRUE(run->end.overlaps.empty());
         }
       }
-    }
-  }
-}
-
-/// The accurate method gets no second iteration: statics go passively, and press in at once what is
-/// still to come.
-TEST(PressFits, StaticsThatGoPassivelyPressAllOfItIn) {
-  for (const double over : {0.0, 0.1}) {
-    for (const char* key : {"", "none"}) {
-      const Bars bars{.lower = 'S',
-                      .upper = 'S',
-                      .over = over,
-                      .end = 0.005,
-                      .key = key,
-                      .scene = "schwarz: {max_iterations: 1, tolerance: 1.0e-14}\n"};
-      SCOPED_TRACE(fmt::format("over {}, key {}", over, key));
-      const auto run = bars.run();
-      ASSERT_TRUE(run->completed()) << run->end.reason;
-      EXPECT_GT(run->end.given_up.windows, 0);
-      EXPECT_TRUE(run->end.overlaps.empty());
-      // Rows of nodes on unlike meshes, not averages: some hundredths.
-      EXPECT_NEAR(stored(*run), 0.5 * bars.force() * bars.deep, 5.0e-2 * bars.force() * bars.deep);
     }
   }
 }

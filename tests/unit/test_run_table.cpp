@@ -88,7 +88,7 @@ TEST_F(RunTableText, TellsTheErrorOfAllThatWasPutIn) {
       response.records = {{time, energy, {}}};
       response.records[0].columns = {0.0, 0.0};
     }
-    damped.on_window({{0, time, time}, responses, {}});
+    damped.on_window({{0, 0.0, time}, responses, {}});
   };
   both(0.0, {});
   both(1.0, {.kinetic = 3.0, .stored = 2.0, .external_work = 50.0});
