@@ -12,6 +12,7 @@ import signal
 import time
 from pathlib import Path
 
+from pressed_stack import pressed_stack
 from support import ABUT, ROOT, SystemTest, is_solver, main, marked
 
 # A scene of each kind, windows from one checkpoint to the next, and shares of its time at which it
@@ -127,6 +128,20 @@ class Kills(Resume):
             shutil.rmtree(whole)
             shutil.rmtree(self.out)
         self.assertGreater(killed, len(SCENES) // 2, "runs end before they can be killed")
+
+    def test_statics_are_the_same_between_passive_steps(self):
+        self.scene.write_text(pressed_stack(", interference: {over: 0}"), encoding="utf-8")
+        whole = self.run_whole(self.scene)
+        given_up = self.summary(whole)["accuracy"]["given_up"]
+        self.assertGreater(given_up["passive_windows"], 2)
+        for until in (0.5, 0.625, 0.75):
+            run = self.begin(self.scene)
+            if self.come_to(run, until):
+                self.kill(run)
+                run = self.resume()
+            self.succeed(self.end(run))
+            self.assert_same(whole, self.out)
+            shutil.rmtree(self.out)
 
     def test_a_killed_solver_costs_what_came_since_the_checkpoint(self):
         whole = self.run_whole(self.scene, *checkpoints(50))

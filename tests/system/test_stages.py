@@ -10,6 +10,7 @@ import itertools
 import sys
 
 sys.dont_write_bytecode = True
+from pressed_stack import MOTION, PRESSURE, WIDTH, pressed_stack  # noqa: E402
 from support import ROOT, SystemTest, main  # noqa: E402
 
 PRESSURE = 1.0e5  # [Pa] on 0.6 m, 1 m thick, or 0.6 m x 0.6 m; grows until statics end
@@ -137,6 +138,27 @@ class Fits(SystemTest):
                 for row in rows[5:]:  # the tolerance of the sweeps, 1e-6, is of the deformation
                     self.assertAlmostEqual(float(row["low.tip.force_x [N]"]) / -BAR_FORCE, 1.0,
                                            delta=1.0e-8)
+
+    def test_statics_that_go_passively_take_an_overlap(self):
+        """The floor and what stabilises bear the load; no stage of motion strikes the floor."""
+        load = PRESSURE * WIDTH
+        for start in (", interference: {over: 0}", ", interference: {over: 0.5}"):
+            with self.subTest(start=start):
+                done, out = self.run_scene(pressed_stack(start))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                summary = self.summary(out)
+                self.assertGreater(summary["accuracy"]["given_up"]["passive_windows"], 0)
+                measures = summary["measures"]
+                held = sum(value for name, value in measures.items()
+                           if name.endswith(".stabilisation.force.y"))
+                floor = measures["body.b0.floor.reaction.y"]
+                # Forces on nodes that are right to some hundredths are in balance far better.
+                self.assertAlmostEqual((floor + held) / load, 1.0, delta=1.0e-3)
+                done, out = self.run_scene(pressed_stack(start, MOTION))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                # 0.1 ms is short: no wave of the upper bodies has come through the lowest one.
+                after = self.summary(out)["measures"]["body.b0.floor.reaction.y"]
+                self.assertAlmostEqual(after / floor, 1.0, delta=1.0e-3)
 
     def test_a_load_presses_on_from_stage_to_stage(self):
         """Of modes or cells below; the second stage of motion changes nothing, or the schemes."""
