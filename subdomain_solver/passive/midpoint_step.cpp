@@ -192,11 +192,14 @@ std::optional<Failed> MidpointStep::solve(const Motion& motion, const Vector& im
   return failed;
 }
 
-/// From the last answer, which differs by less and less as impulses settle.
+/// From the last answer, which differs by less and less as impulses settle. Bodies that are crushed
+/// so far that rounding ends the search before there is balance go the longer way each time: what
+/// they answer depends on it, and small steps have an answer more often (ends of crushed bars: in 6
+/// of 7 runs instead of 2).
 bool MidpointStep::go_on(const Motion& motion) {
   if (!present_->made) present_ = next_;  // the free step's is of its own place
   change_ = answer_;
-  if (!respond(motion) || iterate(motion)) return false;
+  if (!respond(motion) || iterate(motion) || !balanced_) return false;
   answer_ = change_;
   return true;
 }
@@ -228,10 +231,12 @@ std::optional<Failed> MidpointStep::iterate(const Motion& motion) {
   NewtonReport report{NewtonReport::End::not_converged};
   double before = std::numeric_limits<double>::infinity();
   bool afresh = false;
+  balanced_ = false;
   for (int small = 0; report.iterations < most_midpoint_iterations; ++report.iterations) {
     const double size = residual(), least = roundoff();
     if (!std::isfinite(size)) return not_finite(end_);
-    if (size <= least) return std::nullopt;
+    balanced_ = size <= least;
+    if (balanced_) return std::nullopt;
     afresh = afresh || !present_->made || converges_slowly(before, size, least);
     before = size;
     if (!correct(motion, afresh)) return failed_newton({NewtonReport::End::singular}, end_);

@@ -107,6 +107,7 @@ class MidpointStep {
   Factors own_;        // of a step under impulses
   Vector answer_;      // [m/s] (dofs) to the last impulse, from the state of the free step
   bool again_ = false, answered_ = false;
+  bool balanced_ = false;  // as well as rounding allows, at the end of the last search
   // Of the two, those of the last correction, and those that the next tangent goes to.
   Factors *present_ = nullptr, *next_ = nullptr;
   SparseMatrix inertia_, tangent_, matrix_;

@@ -35,12 +35,13 @@ Field run_displaced(const SceneText& scene, Pulse pulse) {
   const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(read, document);
   std::vector<Subdomain*> pointers;
   struct Kept {  // a checkpoint of a bar
-    std::string scheme;
+    std::string scheme, basis;
     bool statics = false;
     BarState state;
     void fields(Archive& archive) {
       archive.field("scheme", scheme);
       archive.field("statics", statics);
+      archive.field("basis", basis);
       state.state(archive);
     }
   };

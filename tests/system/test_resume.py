@@ -157,10 +157,14 @@ class Kills(Resume):
     def test_where_the_scene_says_so_a_lost_body_is_started_again(self):
         whole = self.run_whole(self.scene, *checkpoints(50))
         run = self.begin(self.scene, *checkpoints(50), "--set", "network.on_lost_body=restart")
+        killed = 0
         for until in (3.0, 8.0):
-            self.assertTrue(self.come_to(run, until))
+            if not self.come_to(run, until):  # a quick machine has come to the end meanwhile
+                break
             self.kill_a_solver()
+            killed += 1
             time.sleep(0.3)
+        self.assertGreater(killed, 0)
         ended = self.end(run)
         self.succeed(ended)
         self.assert_same(whole, self.out)
