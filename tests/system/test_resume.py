@@ -108,6 +108,16 @@ class Resume(SystemTest):
         for key in one.keys() - OF_THE_PROGRAM:
             self.assertEqual(other[key], one[key], key)
 
+    def assert_same_where_killed(self, times: tuple, whole: Path, scene: Path, *arguments: object):
+        for until in times:
+            run = self.begin(scene, *arguments)
+            if self.come_to(run, until):
+                self.kill(run)
+                run = self.resume()
+            self.succeed(self.end(run))
+            self.assert_same(whole, self.out)
+            shutil.rmtree(self.out)
+
 
 class Kills(Resume):
     def test_a_run_that_is_killed_again_and_again_ends_in_the_same_bits(self):
@@ -134,14 +144,7 @@ class Kills(Resume):
         whole = self.run_whole(self.scene)
         given_up = self.summary(whole)["accuracy"]["given_up"]
         self.assertGreater(given_up["passive_windows"], 2)
-        for until in (0.5, 0.625, 0.75):
-            run = self.begin(self.scene)
-            if self.come_to(run, until):
-                self.kill(run)
-                run = self.resume()
-            self.succeed(self.end(run))
-            self.assert_same(whole, self.out)
-            shutil.rmtree(self.out)
+        self.assert_same_where_killed((0.5, 0.625, 0.75), whole, self.scene)
 
     def test_a_killed_solver_costs_what_came_since_the_checkpoint(self):
         whole = self.run_whole(self.scene, *checkpoints(50))
@@ -305,14 +308,7 @@ class Stages(Resume):
         every = ["--set", "output.checkpoint={windows: 3}", "--set",
                  "stages.impact.output.checkpoint={windows: 20}"]
         whole = self.run_whole(self.SCENE, *every)
-        for until in (0.2, 0.999, 1.0002):
-            run = self.begin(self.SCENE, *every)
-            if self.come_to(run, until):
-                self.kill(run)
-                run = self.resume()
-            self.succeed(self.end(run))
-            self.assert_same(whole, self.out)
-            shutil.rmtree(self.out)
+        self.assert_same_where_killed((0.2, 0.999, 1.0002), whole, self.SCENE, *every)
 
     def test_the_end_of_a_stage_is_always_kept(self):
         self.succeed(self.end(self.begin(self.SCENE)))
