@@ -16,6 +16,7 @@
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/horizon.hpp"
 #include "coordinator/coupling/velocity_start.hpp"
+#include "coordinator/coupling/work_of_contact.hpp"
 #include "coordinator/energy_account.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/record/validity_notes.hpp"
@@ -325,6 +326,8 @@ Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
     return {};
   }
   if (guard_.refuses(bodies_.responses(), bodies_.struck())) return gains;
+  if (guard_.loses(bodies_.responses(), lost_to_contact(joints_, bodies_), bodies_.struck()))
+    return {Judgement::Verdict::fail, window.end, "contact would take energy"};
   if (std::string crossed = crossing_.look(); !crossed.empty())
     return {Judgement::Verdict::fail, window.end, std::move(crossed)};
   return repay() ? Judgement() : gains;
@@ -412,13 +415,9 @@ int Controller::records_in(const TimeWindow& window) const {
 /// What bodies tell of friction in an accurate window; passive ones are in the passive way's
 /// ledger.
 void Controller::note_friction() {
-  for (Joint& joint : joints_) {
-    const Side& side = joint.kinematic_side();
-    const PortResponse& reply = bodies_.response(side.body).ports[index(side.port)];
-    if (joint.tied() || side.partner < 0 || index(side.partner) >= reply.reactions.size()) continue;
-    const double told = reply.reactions[index(side.partner)].dissipated;
-    if (told > 0.0) joint.contact.rubbed[index(joint.role.kinematic)] = told;
-  }
+  for (Joint& joint : joints_)
+    if (const double told = friction_told(joint, bodies_); told > 0.0)
+      joint.contact.rubbed[index(joint.role.kinematic)] = told;
 }
 
 double Controller::dissipated(const Joint& joint) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -23,6 +24,10 @@ namespace {
 constexpr double near_ways = 1.5, far_ways = 4.0;
 /// Windows: the accurate method that fails sooner is tried again later, at most after so many.
 constexpr int soon = 10, longest_wait = 64;
+/// Of the largest energy: bodies that would lose more by their own forms stay passive for a while.
+constexpr double lost_by_return = 1.0e-3;
+
+constexpr double anything = std::numeric_limits<double>::infinity();
 
 /// [J] of all that is there at the end, and what contact has taken.
 double energy_put_in(const Bodies& bodies, const PassiveLedger& ledger) {
@@ -242,8 +247,12 @@ void Controller::go_accurately() {
     const auto [distance, speed] = joint.watch->approach(joint, bodies_);
     return distance > far_ways * speed * scene_.time.window;
   });
-  if (!apart || !folds_.apart(far_ways) || !passive_.leave(clock_.time()) || !leave_apart()) return;
-  if (!rejoin()) return;
+  if (!apart || !folds_.apart(far_ways)) return;
+  if (!passive_.leave(clock_.time(), statics ? anything : lost_by_return * guard_.most())) {
+    if (!statics) waiting_.left = soon;
+    return;
+  }
+  if (!leave_apart() || !rejoin()) return;
   waiting_.accurate = 0;
   narrator_.accurate(clock_.time(), statics);
   for (Joint& joint : joints_)
@@ -253,7 +262,7 @@ void Controller::go_accurately() {
 /// Forces of contact are found anew by what follows.
 bool Controller::stays_passive() {
   if (!passive_.active()) return false;
-  if (!passive_.statics() || !passive_.leave(clock_.time())) return true;
+  if (!passive_.statics() || !passive_.leave(clock_.time(), anything)) return true;
   for (Joint& joint : joints_)
     if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
   return false;

@@ -15,7 +15,7 @@ constexpr int looks_from_rest = 10;
 constexpr double by_tools = 0.5, resolved_from_rest = 25.0;
 /// Growth that a window may lead to where it can be gone another way: turning normals, unlike steps
 /// and roles make some thousandths in scenes that the passive way would cost far more. Above it,
-/// the part of a share [M.21].
+/// the part of a share [M.21]. As much may contact take in it.
 constexpr double granted = 5.0e-3, part_of_share = 0.1;
 /// Of a share: growth that stays. Of the default that is below a thousandth of the energy, which
 /// nobody wants, as records within a window come before what is taken back at its end.
@@ -109,6 +109,10 @@ double EnergyGuard::own_energy(std::span<const Response> responses, std::span<co
   return own;
 }
 
+double EnergyGuard::bound() const {
+  return std::max(std::min(share_, granted), part_of_share * share_);
+}
+
 bool EnergyGuard::refuses(std::span<const Response> responses,
                           std::span<const double> struck) const {
   if (!begun_ || !together_) return false;
@@ -122,9 +126,19 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
   const double small = std::max(unresolved(responses), rounding(responses));
   if (unjudged_ > 0 && too_early(responses, motion, small))
     return own - first_ > out_of_nothing * scale;
-  const double bound = std::max(std::min(share_, granted), part_of_share * share_);
-  const double at_once = std::max(bound, notable * share_);
-  return own + repaid_ - first_ > bound * scale || own - latest_ > at_once * scale;
+  const double at_once = std::max(bound(), notable * share_);
+  return own + repaid_ - first_ > bound() * scale || own - latest_ > at_once * scale;
+}
+
+bool EnergyGuard::loses(std::span<const Response> responses, double to_contact,
+                        std::span<const double> struck) const {
+  if (!begun_ || !together_ || unjudged_ > 0) return false;
+  double motion = 0.0;
+  const double own = own_energy(responses, struck, motion);
+  double passed = std::max(most_, motion);  // [J] that contact may have passed on
+  for (const Response& response : responses)
+    passed = std::max(passed, std::abs(response.records.back().energy.external_work));
+  return std::min(to_contact, latest_ - own) > bound() * passed;
 }
 
 bool EnergyGuard::ends(std::span<const Response> responses, double payments) const {

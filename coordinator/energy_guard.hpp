@@ -40,6 +40,11 @@ class EnergyGuard {
   /// two-hundredth above the start (a tenth of the share, where that is more), or by half the share
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
+  /// Whether contact, which takes so much [J] in such a window, takes too much: all bodies together
+  /// have lost more by it than the same share of the largest energy, or of the work of loads and
+  /// tools on a body, which contact passes on  [M.21]. Changes nothing.
+  bool loses(std::span<const Response> responses, double to_contact,
+             std::span<const double> struck = {}) const;
   /// Whether all bodies together would end the run, if they were paid so much [J]. Changes nothing.
   bool ends(std::span<const Response> responses, double payments) const;
   /// [J] by which the energy is above its start, beyond what may stand there: less than a tenth of
@@ -72,6 +77,7 @@ class EnergyGuard {
     void state(Archive& archive);
   };
 
+  double bound() const;
   double own_energy(std::span<const Response> responses, std::span<const double> struck,
                     double& motion) const;
   double unresolved(std::span<const Response> responses) const;

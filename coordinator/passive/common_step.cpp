@@ -250,7 +250,20 @@ bool CommonStep::prepare_rows() {
     if (const auto owed = unclaimed_.extract(row.first_point(0))) row.owed = owed.mapped();
     grown = points_.add(row) || grown;
   }
+  claim_of_others();
   return grown;
+}
+
+/// What is owed to points that begin no row now goes to a row that presses on them: a corner has
+/// slid from one facet to the next, or it is the facet's corner that is held.
+void CommonStep::claim_of_others() {
+  for (DistanceRow& row : rows_) {
+    if (unclaimed_.empty()) return;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (row.weights[i] == 0.0) continue;
+      if (const auto owed = unclaimed_.extract(row.features.points[i])) row.owed += owed.mapped();
+    }
+  }
 }
 
 /// From the impulse of the same features in the step before.
@@ -372,8 +385,7 @@ void CommonStep::solve_rows(std::size_t answered) {
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
   solver.press_from(answered);
   solver.solve(still);
-  released_ = solver.release();
-  if (released_ > 0.0) solver.solve(still);
+  released_ = solver.release(still);
   const double there = credit_ + allowed_ / paid_share;  // [J] of normal contact, while pushing
   const bool dear = solver.work() > allowed_ + released_ + rounding || allowed_ + released_ > there;
   if (pushing_ && dear) {

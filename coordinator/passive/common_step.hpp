@@ -78,6 +78,7 @@ class CommonStep {
   std::optional<Refusal> iterate();
   bool prepare_rows();
   void warm(DistanceRow& row);
+  void claim_of_others();
   std::optional<Failed> advance(bool all);
   void see_velocities();
   void find_impulses(bool any);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <variant>
 
@@ -265,7 +266,7 @@ std::vector<double> PassiveWay::repay(std::span<const int> bodies, double joules
   return gave;
 }
 
-bool PassiveWay::leave(double time) {
+bool PassiveWay::leave(double time, double may_lose) {
   bodies_.save_all();
   std::vector<double> lost(index(bodies_.count()), 0.0);
   for (int b = 0; b < bodies_.count(); ++b) {
@@ -274,6 +275,10 @@ bool PassiveWay::leave(double time) {
       bodies_.restore_all();
       return false;
     }
+  }
+  if (std::accumulate(lost.begin(), lost.end(), 0.0) > may_lose) {
+    bodies_.restore_all();
+    return false;
   }
   for (int b = 0; b < bodies_.count(); ++b) {
     ledger_.switched += lost[index(b)];

@@ -44,8 +44,9 @@ class PassiveWay {
   /// Advances all bodies and fills their responses, with so many records.
   [[nodiscard]] std::optional<Failed> window(const TimeWindow& window, int records,
                                              std::span<const Joint> joints);
-  /// False: a body cannot, and all stay as they are.
-  bool leave(double time);
+  /// False: a body cannot, or all together would lose more than so much [J] by it, and all stay as
+  /// they are.
+  bool leave(double time, double may_lose);
   /// The bodies have been restored to where they were before they left.
   void stay() { active_ = true; }
   /// Takes energy [J] from the motion by which bodies deform that are in their own schemes, in the

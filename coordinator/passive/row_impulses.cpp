@@ -131,7 +131,17 @@ double RowImpulses::recoil(std::size_t k) const {
   return w > 0.0 ? 2.0 * row.owed / (w + root) : (root - w) / (2.0 * own);
 }
 
-double RowImpulses::release() {
+double RowImpulses::release(double negligible) {
+  double released = 0.0;
+  for (double sum = let_go(); sum > released; sum = let_go()) {
+    released = sum;
+    solve(negligible);
+  }
+  return released;
+}
+
+/// Those that press no more and part, as velocities are.
+double RowImpulses::let_go() {
   double sum = 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     DistanceRow& row = rows_[k];

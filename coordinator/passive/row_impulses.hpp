@@ -27,8 +27,9 @@ class RowImpulses {
   double velocity(const DistanceRow& row) const { return velocity(row, 0); }
   /// [J] sum of J.w
   double work() const;
-  /// Rows that are owed something, press no more and part, give it back from now on; its sum [J].
-  double release();
+  /// Rows that are owed something, press no more and part, give it back from now on, and those that
+  /// part by this, too; solved again. `negligible`: as above. Its sum [J].
+  double release(double negligible);
   /// Makes the work at most so much [J]; the factor that it took.
   double limit(double most);
 
@@ -47,6 +48,7 @@ class RowImpulses {
   void press(std::size_t row, int direction, double impulse);
   double solve_normal(std::size_t row);
   double recoil(std::size_t row) const;
+  double let_go();
   double solve_friction(std::size_t row);
 
   std::vector<DistanceRow>& rows_;

@@ -14,11 +14,14 @@ namespace {
 
 /// Of the largest energy: what a step's account may gain before the step is refused.
 constexpr double most_gain = 1.0e-3;
-/// Of what normal impulses took: what rows give back as they part. The rest is for bodies that
-/// answer a little otherwise than was foreseen.
-constexpr double given_back = 0.98;
+/// Of what normal impulses took: what rows give back as they part. The rest is for the rounding of
+/// work; of bodies that answer otherwise than was foreseen impulses are sought again.
+constexpr double given_back = 0.9998;
 /// Speeds that loads make in so many steps are no blows.
 constexpr double steps_of_loads = 2.0;
+/// Thicknesses: sides that begin a step farther from each other do not press there, and meet within
+/// it.
+constexpr double apart = 3.0;
 /// Of the shortest edge: points less deep behind a surface are on it.
 constexpr double rounding_of_places = 1.0e-6;
 
@@ -91,6 +94,7 @@ void CommonStep::count_normal(const DistanceRow& row, PassiveLedger& ledger) {
 }
 
 /// Whether its sides came faster than loads make them in a few steps: what comes slower lies down.
+/// Without loads sides that meet within the step count, too, whatever they did at its begin.
 bool CommonStep::is_blow(const DistanceRow& row) const {
   const auto dim = index(surfaces_.skin().dim);
   double speed = 0.0, loads = 0.0;  // [m/s], [m/s^2]
@@ -106,6 +110,8 @@ bool CommonStep::is_blow(const DistanceRow& row) const {
     const TouchingSurfaces::Point& at = surfaces_[row.first_point(side)];
     loads += bodies_.response(at.body).ports[index(at.port)].acceleration_bound;
   }
+  if (loads == 0.0 && row.gap > apart * near_.thickness())  // nothing has to lie down
+    speed = std::max(speed, -row_velocity(row, velocities_, 0));
   return speed > steps_of_loads * loads * length();
 }
 

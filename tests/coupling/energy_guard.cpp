@@ -57,6 +57,29 @@ TEST(EnergyGuard, RefusesWindowsThatGainByAndByOrMuchAtOnce) {
   }
 }
 
+// What contact has taken counts where the bodies have lost it: neither what one of them takes that
+// says nothing of its energy, nor what schemes lose by themselves. Of the largest energy, or of the
+// work that passes through.
+TEST(EnergyGuard, RefusesWindowsInWhichContactTakesMuch) {
+  struct Case {
+    double share, bound;  // guard's, and of what may be taken
+  };
+  for (const Case& is : {Case{0.01, 5.0e-3}, {5.0e-4, 5.0e-4}, {1.0, 0.1}}) {
+    EnergyGuard guard(is.share, {false});
+    const double below = 990.0 * is.bound, above = 1010.0 * is.bound;
+    EXPECT_FALSE(guard.loses(std::vector{holding(0.0, 0.0)}, above)) << "nothing to compare with";
+    guard.look(std::vector{holding(1000.0, 0.0)});
+    const auto loses = [&](double lost, double to_contact, double work = 0.0) {
+      return guard.loses(std::vector{holding(1000.0 - lost + work, 0.0, work)}, to_contact);
+    };
+    EXPECT_TRUE(loses(above, above)) << is.share;
+    EXPECT_FALSE(loses(below, above)) << is.share;
+    EXPECT_FALSE(loses(above, below)) << is.share;
+    EXPECT_FALSE(loses(above, -above)) << is.share;
+    EXPECT_FALSE(loses(above, above, 1100.0)) << "of what has passed through it is less";
+  }
+}
+
 // v- M v+/2 of velocities that a step turns is all there was, with the other sign, and no more.
 TEST(EnergyGuard, RefusesKineticEnergyThatDipsBelowWhatThereIs) {
   EnergyGuard guard(0.01, {false});
