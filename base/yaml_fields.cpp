@@ -229,7 +229,7 @@ std::string Reader::chosen(const Key& key, const std::string& path, const YAML::
                            std::span<const Preset> presets) const {
   const std::string form =
       fmt::format("Give {} as {{name: {{its keys}}}}, with one of {}.", noun(key), one_of(names));
-  const bool bare = is_plain(node);
+  const bool bare = node.IsScalar();  // in quotes or not, as JSON has it
   if (node.IsMap() && node.size() > 1) {  // the last is the one that --set added, where it did
     std::vector<std::string> given;
     for (const auto& pair : node) given.push_back(pair.first.Scalar());
@@ -274,7 +274,7 @@ void Reader::descend(std::string_view name, std::string_view shorthand,
   if (preset != nullptr) node.reset(map_of(*preset));
   if (!node.IsMap()) {
     errors_.gather([&] {
-      if (!presets.empty() && is_plain(node) && !parse<double>(node.Scalar()))
+      if (!presets.empty() && node.IsScalar() && !parse<double>(node.Scalar()))
         fail(path, fmt::format("is {}, which is not a known choice", node.Scalar()),
              suggestion(node.Scalar(), names_of(presets), "Give a map of keys, or one of"));
       wrong_type(path, "a map of keys", node,

@@ -260,7 +260,7 @@ void BehindRows::gather(SkinTrees& trees, const Places& from, const Places& to) 
 }
 
 /// That of the step before as long as there is one like it; else through a facet that faces the
-/// point; else the shortest one.
+/// point; else the shortest one, unless a nearer facet has the point on it or before it.
 BehindRows::WayOut BehindRows::way_out(std::size_t k, const Places& places) const {
   WayOut best;
   for (const std::int32_t feature : around_[k]) {
@@ -269,6 +269,9 @@ BehindRows::WayOut BehindRows::way_out(std::size_t k, const Places& places) cons
     else
       see_facet(behind_[k], feature, places, best);
   }
+  // A corner that lies on another one has no facet before it, and is not as deep as the body is.
+  if (best.rank == 1 && !behind_[k].is_edge() && best.distance > best.nearest + rounding_)
+    best.rank = 0;
   return best;
 }
 
@@ -283,6 +286,7 @@ void BehindRows::see_facet(const Behind& what, std::int32_t facet, const Places&
   const Eigen::Vector3d normal = sides_.facet_normal(places, facet);
   const Eigen::Vector3d difference = found.difference(x);
   way.distance = found.distance;
+  way.nearest = best.nearest = std::min(best.nearest, found.distance);
   way.row.weights = found.weights;
   way.row.normal = normal;
   way.row.gap = normal.dot(difference);

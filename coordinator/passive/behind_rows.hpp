@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -55,6 +56,7 @@ class BehindRows {
     DistanceRow row;
     int rank = 0;  // 0: there is none
     double distance = 0.0, against = 0.0;
+    double nearest = std::numeric_limits<double>::infinity();  // [m] of all facets that were seen
   };
 
   const Behind* known(std::array<std::int32_t, 2> points, std::int32_t group) const;

@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/unit_words.hpp"
+#include "base/yaml_differences.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/launch_local.hpp"
 #include "coordinator/metered_body.hpp"
@@ -239,7 +240,8 @@ class Restarts {
 
 }  // namespace
 
-/// As they are written: what a stage does not name is that of the stage before.
+/// As they are written, but for quotes, which stages lose: what a stage does not name is that of
+/// the stage before.
 std::vector<std::string> swapped_bodies(const Document& document) {
   const std::optional<Document> next = document.next_stage();
   std::vector<std::string> names;
@@ -249,7 +251,7 @@ std::vector<std::string> swapped_bodies(const Document& document) {
     ResolvedYaml before(document.units()), now(next->units());
     before.copy(key, document);
     now.copy(key, *next);
-    if (before.text() != now.text()) names.push_back(name);
+    if (!differences(before.text(), now.text()).empty()) names.push_back(name);
   }
   return names;
 }

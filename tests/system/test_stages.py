@@ -226,6 +226,10 @@ class Rest(SystemTest):
             with self.subTest(kind=kind):
                 self.check(2, *kind)
 
+    def test_quotes_make_no_other_model(self):
+        """As scenes in JSON have them; the body goes on with what statics have left."""
+        self.check(2, '"quad4"', "linear", "contact", "implicit")
+
     def test_in_space(self):
         for law, meeting in (("linear", "friction"), ("neo", "tied"), ("yields", "contact")):
             with self.subTest(law=law, meeting=meeting):

@@ -34,6 +34,7 @@ class Pair {
   /// All places, with the second body moved.
   std::vector<Vector> moved(const Vector& by) const {
     std::vector<Vector> places = surfaces_.reference();
+    for (Vector& place : places) place.y() *= squeezed;
     for (std::size_t p = 0; p < places.size(); ++p)
       if (surfaces_.skin().group[p] == 1) places[p] += by;
     return places;
@@ -44,11 +45,20 @@ class Pair {
     near_.find(moved(by), rows);
     return rows;
   }
+  /// Rows of the next step, after one that ends there.
+  std::vector<DistanceRow> after(const Vector& by) {
+    near_.accept(moved(by));
+    std::vector<DistanceRow> rows;
+    near_.find(moved(by), rows);
+    return rows;
+  }
   int offended(const Vector& from, const Vector& to) {
     std::vector<DistanceRow> rows;
     near_.find(moved(from), rows);
     return near_.check(moved(from), moved(to), rows).pairs;
   }
+
+  double squeezed = 1.0;  // of heights
 
  private:
   std::unique_ptr<Subdomain> one_, other_;
@@ -134,6 +144,19 @@ TEST(RowsBehind, HoldAlongTheShortestWayWhereNothingFaces) {
   ASSERT_NE(lowest, rows.end());
   EXPECT_NEAR(lowest->normal.y(), -1.0, rounding);
   EXPECT_NEAR(lowest->gap, -depth, rounding);
+}
+
+/// A corner beside another one that comes up along it, with no facet before it, is as deep as
+/// nothing: the lower facet of the plate's right side, whose plane goes outside of that corner as
+/// the side bulges, is no way out.
+TEST(RowsBehind, AreNotAsDeepAsTheBodyWhereCornersMeet) {
+  const std::string bulges = "map: [\"x + 1.0e-5 * y * (0.5 - y)\", \"y\"], ";
+  Pair pair{rigid("plate", "boundary", bulges, {1.0, 0.5}, {1, 2}),
+            rigid("block", "boundary", "", {1.0, 0.5}, {1, 1})};
+  pair.squeezed = 0.9;  // so that the lower facet is within an edge's first length
+  pair.begin(Vector(1.0, 0.0, 0.0));
+  for (const DistanceRow& row : pair.after(Vector(1.0 + 1.0e-7, 1.0e-6, 0.0)))
+    EXPECT_GT(row.gap, -1.0e-6);
 }
 
 /// Two edges through each other, all of whose ends are outside.

@@ -348,6 +348,7 @@ TEST(YamlFields, TagsAreRefused) {
         << tag;
   }
   EXPECT_EQ(refusal("length: 2\nmaterial: void\ntext: \"quoted\"\n"), "not refused");
+  EXPECT_EQ(refusal("length: 2\nmaterial: \"void\"\n"), "not refused");
 }
 
 TEST(YamlFields, SyntaxErrorNamesItsLine) {
