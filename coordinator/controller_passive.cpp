@@ -50,7 +50,9 @@ bool Controller::may_go_passively() const {
 /// Schemes of finite strain make energy in steps that are long for a body's waves and turns: what
 /// would end the run is gone the other way.
 std::optional<Failed> Controller::made_by_themselves(const TimeWindow& window) const {
-  if (!may_go_passively() || passive_.on_a_line() || !guard_.refuses(bodies_.responses()))
+  const int records = scene_.output.records_per_window;
+  if (!may_go_passively() || passive_.on_a_line() ||
+      !guard_.refuses_flight(bodies_.responses(), records))
     return std::nullopt;
   return Failed{Failed::Cause::no_convergence, window.end,
                 "steps of a body that nothing touches would make energy"};

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/index.hpp"
+
 namespace abut {
 
 namespace {
@@ -95,15 +97,14 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
   return verdict((own - first_) / most_, share_, all_conserve_);
 }
 
-/// [J] of all bodies together, less what impulses did; `motion`: the kinetic and stored part.
-double EnergyGuard::own_energy(std::span<const Response> responses, std::span<const double> struck,
+/// [J] of all bodies together; `motion`: the kinetic and stored part.
+double EnergyGuard::own_energy(std::span<const Response> responses, std::size_t record,
                                double& motion) const {
   double own = 0.0;
   motion = 0.0;
-  for (std::size_t b = 0; b < responses.size(); ++b) {
-    const Energy& energy = responses[b].records.back().energy;
+  for (const Response& response : responses) {
+    const Energy& energy = response.records[record].energy;
     own += energy.total() + energy.dissipated - energy.external_work;
-    own -= struck.empty() ? 0.0 : struck[b];
     motion += energy.kinetic + energy.stored;
   }
   return own;
@@ -113,21 +114,48 @@ double EnergyGuard::bound() const {
   return std::max(std::min(share_, granted), part_of_share * share_);
 }
 
+/// At the end, less what impulses did.
+double EnergyGuard::own_energy(std::span<const Response> responses, std::span<const double> struck,
+                               double& motion) const {
+  if (responses.empty()) return motion = 0.0;
+  double own = own_energy(responses, responses.front().records.size() - 1, motion);
+  for (const double joules : struck) own -= joules;
+  return own;
+}
+
 bool EnergyGuard::refuses(std::span<const Response> responses,
                           std::span<const double> struck) const {
   if (!begun_ || !together_) return false;
   double motion = 0.0;
   const double own = own_energy(responses, struck, motion);
-  const double scale = std::max(most_, motion);
   // That of leapfrog, v- M v+/2, dips where a step turns velocities; by more than there is it
   // cannot.
   for (const Response& response : responses)
-    if (response.records.back().energy.kinetic < -scale) return true;
+    if (response.records.back().energy.kinetic < -std::max(most_, motion)) return true;
+  return gains(responses, own, own - latest_, motion);
+}
+
+bool EnergyGuard::refuses_flight(std::span<const Response> responses, int window) const {
+  if (!begun_ || !together_ || responses.empty()) return false;
+  const std::size_t records = responses.front().records.size(), each = index(window);
+  double before = latest_, motion = 0.0;
+  for (std::size_t record = each - 1; record + 1 < records; record += each) {
+    const double own = own_energy(responses, record, motion);
+    if (gains(responses, own, own - before, motion)) return true;
+    before = own;
+  }
+  return refuses(responses);
+}
+
+/// [J] `own`: all energy, `more`: by how much it has grown in a window.
+bool EnergyGuard::gains(std::span<const Response> responses, double own, double more,
+                        double motion) const {
+  const double scale = std::max(most_, motion);
   const double small = std::max(unresolved(responses), rounding(responses));
   if (unjudged_ > 0 && too_early(responses, motion, small))
     return own - first_ > out_of_nothing * scale;
   const double at_once = std::max(bound(), notable * share_);
-  return own + repaid_ - first_ > bound() * scale || own - latest_ > at_once * scale;
+  return own + repaid_ - first_ > bound() * scale || more > at_once * scale;
 }
 
 bool EnergyGuard::loses(std::span<const Response> responses, double to_contact,

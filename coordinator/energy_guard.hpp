@@ -45,6 +45,9 @@ class EnergyGuard {
   /// tools on a body, which contact passes on  [M.21]. Changes nothing.
   bool loses(std::span<const Response> responses, double to_contact,
              std::span<const double> struck = {}) const;
+  /// The same of a flight, at the end of each of its windows, `window` records apart: what is made
+  /// and damped away within it counts as well, and how windows are joined changes nothing.
+  bool refuses_flight(std::span<const Response> responses, int window) const;
   /// Whether all bodies together would end the run, if they were paid so much [J]. Changes nothing.
   bool ends(std::span<const Response> responses, double payments) const;
   /// [J] by which the energy is above its start, beyond what may stand there: less than a tenth of
@@ -78,8 +81,10 @@ class EnergyGuard {
   };
 
   double bound() const;
+  double own_energy(std::span<const Response> responses, std::size_t record, double& motion) const;
   double own_energy(std::span<const Response> responses, std::span<const double> struck,
                     double& motion) const;
+  bool gains(std::span<const Response> responses, double own, double more, double motion) const;
   double unresolved(std::span<const Response> responses) const;
   double rounding(std::span<const Response> responses) const;
   Verdict verdict(double change, double share, bool losses);

@@ -80,6 +80,27 @@ TEST(EnergyGuard, RefusesWindowsInWhichContactTakesMuch) {
   }
 }
 
+// What is made in a flight and damped away before its end is as in windows one by one; records
+// within a window are not asked.
+TEST(EnergyGuard, RefusesFlightsThatGainOnTheWay) {
+  EnergyGuard guard(0.01, {false});
+  guard.look(std::vector{holding(1000.0, 0.0)});
+  Response response = holding(1000.0, 0.0);
+  response.records.resize(6, response.records[0]);
+  response.records[2].energy.kinetic = 1010.0;
+  const std::vector one{response};
+  EXPECT_FALSE(guard.refuses(one));
+  EXPECT_TRUE(guard.refuses_flight(one, 1));
+  EXPECT_FALSE(guard.refuses_flight(one, 2)) << "the third of six is in the midst of a window";
+  EXPECT_TRUE(guard.refuses_flight(one, 3));
+  // At once, after a loss.
+  for (BodyRecord& record : response.records) record.energy.kinetic = 500.0;
+  response.records[3].energy.kinetic = 510.0;
+  guard.look(std::vector{holding(500.0, 0.0)});
+  EXPECT_TRUE(guard.refuses_flight(std::vector{response}, 1));
+  EXPECT_FALSE(guard.refuses_flight(std::vector{response}, 3));
+}
+
 // v- M v+/2 of velocities that a step turns is all there was, with the other sign, and no more.
 TEST(EnergyGuard, RefusesKineticEnergyThatDipsBelowWhatThereIs) {
   EnergyGuard guard(0.01, {false});
