@@ -27,9 +27,11 @@ constexpr double spare = 0.01;
 /// Of a share: what is told, and what one window may gain. Contact that dips and comes back stays
 /// below: 0.2 of it where a block lands, 0.02 where balls roll.
 constexpr double notable = 0.5;
-/// Of all there is in motion: what a window of bodies from rest may not make, though it is too
-/// early to judge it closely. Gaps that are means over coarse facets press before surfaces touch.
-constexpr double out_of_nothing = 0.5;
+/// Of all there is in motion: what the first window of bodies from rest may not make, though it is
+/// too early to judge it closely: gaps that are means over coarse facets press before surfaces
+/// touch, which was a tenth where ten blocks are set on each other. It falls with the square of the
+/// looks that are left to what ends the run after them.
+constexpr double out_of_nothing = 0.2;
 /// Roundings of a place that may go into the velocity of a body: 16 in the sums of each step, and
 /// those of a million steps add up by chance, to the root of that.
 constexpr double roundings = 16.0e3;
@@ -97,13 +99,15 @@ EnergyGuard::Verdict EnergyGuard::look(std::span<const Response> responses,
   return verdict((own - first_) / most_, share_, all_conserve_);
 }
 
-/// [J] of all bodies together; `motion`: the kinetic and stored part.
-double EnergyGuard::own_energy(std::span<const Response> responses, std::size_t record,
+/// [J] of all bodies together, so many records before the end; `motion`: the kinetic and stored
+/// part. A body that stands may have told fewer.
+double EnergyGuard::own_energy(std::span<const Response> responses, std::size_t before_end,
                                double& motion) const {
   double own = 0.0;
   motion = 0.0;
   for (const Response& response : responses) {
-    const Energy& energy = response.records[record].energy;
+    const std::size_t last = response.records.size() - 1;
+    const Energy& energy = response.records[last - std::min(before_end, last)].energy;
     own += energy.total() + energy.dissipated - energy.external_work;
     motion += energy.kinetic + energy.stored;
   }
@@ -117,8 +121,7 @@ double EnergyGuard::bound() const {
 /// At the end, less what impulses did.
 double EnergyGuard::own_energy(std::span<const Response> responses, std::span<const double> struck,
                                double& motion) const {
-  if (responses.empty()) return motion = 0.0;
-  double own = own_energy(responses, responses.front().records.size() - 1, motion);
+  double own = own_energy(responses, 0, motion);
   for (const double joules : struck) own -= joules;
   return own;
 }
@@ -136,11 +139,12 @@ bool EnergyGuard::refuses(std::span<const Response> responses,
 }
 
 bool EnergyGuard::refuses_flight(std::span<const Response> responses, int window) const {
-  if (!begun_ || !together_ || responses.empty()) return false;
-  const std::size_t records = responses.front().records.size(), each = index(window);
+  if (!begun_ || !together_) return false;
+  std::size_t records = 0;
+  for (const Response& response : responses) records = std::max(records, response.records.size());
   double before = latest_, motion = 0.0;
-  for (std::size_t record = each - 1; record + 1 < records; record += each) {
-    const double own = own_energy(responses, record, motion);
+  for (std::size_t told = index(window); told < records; told += index(window)) {
+    const double own = own_energy(responses, records - told, motion);
     if (gains(responses, own, own - before, motion)) return true;
     before = own;
   }
@@ -152,8 +156,10 @@ bool EnergyGuard::gains(std::span<const Response> responses, double own, double 
                         double motion) const {
   const double scale = std::max(most_, motion);
   const double small = std::max(unresolved(responses), rounding(responses));
-  if (unjudged_ > 0 && too_early(responses, motion, small))
-    return own - first_ > out_of_nothing * scale;
+  if (unjudged_ > 0 && too_early(responses, motion, small)) {
+    const double left = unjudged_ / static_cast<double>(looks_from_rest);
+    return own - first_ > (bound() + out_of_nothing * left * left) * scale;
+  }
   const double at_once = std::max(bound(), notable * share_);
   return own + repaid_ - first_ > bound() * scale || more > at_once * scale;
 }

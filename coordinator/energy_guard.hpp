@@ -81,7 +81,8 @@ class EnergyGuard {
   };
 
   double bound() const;
-  double own_energy(std::span<const Response> responses, std::size_t record, double& motion) const;
+  double own_energy(std::span<const Response> responses, std::size_t before_end,
+                    double& motion) const;
   double own_energy(std::span<const Response> responses, std::span<const double> struck,
                     double& motion) const;
   bool gains(std::span<const Response> responses, double own, double more, double motion) const;

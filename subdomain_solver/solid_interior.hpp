@@ -189,7 +189,7 @@ class SolidInterior final : public Interior,
   std::vector<double> lag_;                  // [m/s] of velocities behind the impulses
   Vector momentum_, behind_, nodes_behind_;  // [kg m/s]; behind the impulses: of coordinates, nodes
   std::vector<double> before_, now_;         // [m], [N] (port values)
-  Vector change_, on_ports_;                 // [N] (coordinates), (nodes, dim)
+  mutable Vector change_, on_ports_;         // [N] (coordinates), (nodes, dim)
   std::unique_ptr<PortForecast> forecast_;   // null: only walks tell where ports go
   std::unique_ptr<PortStatics> statics_;     // null: the body has inertia, or no ports
   std::unique_ptr<MidpointStep> midpoint_;   // of the passive form; null: none, or another one

@@ -40,6 +40,7 @@ std::optional<Failed> RigidMotion::step(Motion& motion, double time, double dt) 
   body_.drift(next_.q, next_.v, dt);
   load(next_, time + dt);
   kick(next_, 0.5 * dt);
+  next_.step = dt;
   std::swap(motion, next_);
   return std::nullopt;
 }

@@ -151,13 +151,18 @@ TEST(EnergyGuard, JudgesWindowsFromRestOnceToolsHaveDoneMoreThanLoadsMake) {
   };
   guard.look(struck(0.0, 0.0, 0.0));
   constexpr double loads = 25.0 * 4.0;  // [J] of 1 m/s in a step, after ten steps
-  constexpr double below = 0.9 * loads, above = 1.1 * loads, gain = 0.3;
+  constexpr double below = 0.9 * loads, above = 1.1 * loads, gain = 0.1;
   EXPECT_FALSE(guard.refuses(struck(below, (1.0 - gain) * below, 0.0)));
   EXPECT_EQ(guard.excess(struck(below, (1.0 - gain) * below, 0.0)), 0.0);
   EXPECT_FALSE(guard.refuses(struck(above, 0.0, (1.0 - gain) * above)));
   EXPECT_EQ(guard.excess(struck(above, 0.0, (1.0 - gain) * above)), 0.0);
   EXPECT_TRUE(guard.refuses(struck(above, (1.0 - gain) * above, 0.0)));
   EXPECT_GT(guard.excess(struck(above, (1.0 - gain) * above, 0.0)), 0.0);
+  // Less may be made as the tenth window comes, after which the run would end by it.
+  EXPECT_TRUE(guard.refuses(struck(below, 0.0, 0.7 * below)));
+  for (int k = 0; k < 8; ++k) guard.look(struck(0.0, 0.0, 0.0));
+  EXPECT_TRUE(guard.refuses(struck(below, 0.0, (1.0 - gain) * below)));
+  EXPECT_FALSE(guard.refuses(struck(below, 0.0, 0.994 * below)));
 }
 
 /// 2 kg under 10 m/s^2 in steps of 0.1 s: 2 (1 m/s)^2 count as if in motion.

@@ -123,9 +123,30 @@ TEST(RigidSolid, TakesTheForceAndMomentOfItsPort) {
   ASSERT_EQ(record.angular_momentum.size(), 1u);
   EXPECT_NEAR(record.angular_momentum[0], 0.5 * nodes * time, roundoff(1000.0, nodes * time));
   const double work = 0.5 * time * time * (nodes * nodes / mass + 0.25 * nodes * nodes / inertia);
-  EXPECT_NEAR(record.energy.kinetic, work, roundoff(1000.0, work));
+  // Half of the last kick is not counted yet, a quarter of the energy of the one step: as much less
+  // is told as done by loads, and both together are what the port did.
+  EXPECT_NEAR(record.energy.kinetic, 0.75 * work, roundoff(1000.0, work));
+  EXPECT_NEAR(record.energy.kinetic - record.energy.external_work, work, roundoff(1000.0, work));
   // And what acts is told back.
   EXPECT_EQ(response.ports[0].trace.f, std::vector<double>({0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}));
+}
+
+/// A force that grows from nothing over the step turns its velocity at the end, and has not moved
+/// it: it has no energy of that, and no load has worked.
+TEST(RigidSolid, HasNoEnergyOfAKickThatHasNotMovedIt) {
+  for (const int dim : {2, 3}) {
+    const std::unique_ptr<Subdomain> body = build_rigid(dim, "");
+    Response response;
+    Advance request = pushed(*body, begin, 1.0e-3, {3.0, 1.0, -2.0});
+    std::vector<double>& forces = request.boundary[0].forces[0].f;
+    std::fill_n(forces.begin(), forces.size() / 2, 0.0);
+    step(*body, request, response);
+    const BodyRecord& record = response.records.back();
+    const double impulse = record.momentum[1], scale = impulse * impulse / body->describe().mass;
+    EXPECT_GT(impulse, 0.0);
+    EXPECT_NEAR(record.energy.kinetic, 0.0, roundoff(1000.0, 100.0 * scale)) << dim;
+    EXPECT_NEAR(record.energy.external_work, 0.0, roundoff(1000.0, 100.0 * scale)) << dim;
+  }
 }
 
 TEST(RigidSolid, DescribesItself) {
