@@ -15,10 +15,10 @@ namespace {
 
 using Row = Lanes<4>::Real;  // what a node carries: 3 numbers and one unused
 
-/// Values of 8 cells' nodes, (nodes, 3, 8), from rows of 4.
+/// Values of 8 cells' nodes, (nodes, 3, 8), from rows of 4. Called, as scatter is: one code serves
+/// all cells of so many nodes.
 template <int nodes>
-[[gnu::always_inline]] inline void gather(const double* from, const std::int32_t* list,
-                                          double* out) {
+[[gnu::noinline]] void gather(const double* from, const std::int32_t* list, double* out) {
   ABUT_UNROLLED (a, 0, nodes)
     ABUT_UNROLLED (part, 0, 2) {
       const int half = 4 * part;
@@ -39,8 +39,7 @@ template <int nodes>
 /// Adds to rows of 4, node after node and cell after cell: the same sums for every width of lanes,
 /// and cells of a batch may share nodes.
 template <int nodes>
-[[gnu::always_inline]] inline void scatter(const double* from, const std::int32_t* list,
-                                           double* out) {
+[[gnu::noinline]] void scatter(const double* from, const std::int32_t* list, double* out) {
   const Row none{};
   ABUT_UNROLLED (a, 0, nodes)
     ABUT_UNROLLED (part, 0, 2) {
