@@ -17,8 +17,10 @@ constexpr int looks_from_rest = 10;
 constexpr double by_tools = 0.5, resolved_from_rest = 25.0;
 /// Growth that a window may lead to where it can be gone another way: turning normals, unlike steps
 /// and roles make some thousandths in scenes that the passive way would cost far more. Above it,
-/// the part of a share [M.21]. As much may contact take in it.
+/// the part of a share [M.21].
 constexpr double granted = 5.0e-3, part_of_share = 0.1;
+/// What contact may take in a window, in units of that: a fiftieth of the energy.
+constexpr double taken = 4.0;
 /// Of a share: growth that stays. Of the default that is below a thousandth of the energy, which
 /// nobody wants, as records within a window come before what is taken back at its end.
 constexpr double stands = 0.08;
@@ -172,7 +174,7 @@ bool EnergyGuard::loses(std::span<const Response> responses, double to_contact,
   double passed = std::max(most_, motion);  // [J] that contact may have passed on
   for (const Response& response : responses)
     passed = std::max(passed, std::abs(response.records.back().energy.external_work));
-  return std::min(to_contact, latest_ - own) > bound() * passed;
+  return std::min(to_contact, latest_ - own) > taken * bound() * passed;
 }
 
 bool EnergyGuard::ends(std::span<const Response> responses, double payments) const {

@@ -41,8 +41,8 @@ class EnergyGuard {
   /// at once [M.21]. Changes nothing.
   bool refuses(std::span<const Response> responses, std::span<const double> struck = {}) const;
   /// Whether contact, which takes so much [J] in such a window, takes too much: all bodies together
-  /// have lost more by it than the same share of the largest energy, or of the work of loads and
-  /// tools on a body, which contact passes on  [M.21]. Changes nothing.
+  /// have lost more by it than four times that share of the largest energy, or of the work of
+  /// loads and tools on a body, which contact passes on  [M.21]. Changes nothing.
   bool loses(std::span<const Response> responses, double to_contact,
              std::span<const double> struck = {}) const;
   /// The same of a flight, at the end of each of its windows, `window` records apart: what is made

@@ -1,5 +1,8 @@
 #include "coordinator/coupling/work_of_contact.hpp"
 
+#include <set>
+#include <utility>
+
 #include "base/index.hpp"
 
 namespace abut {
@@ -14,9 +17,11 @@ double friction_told(const Joint& joint, const Bodies& bodies) {
 
 double lost_to_contact(std::span<const Joint> joints, const Bodies& bodies) {
   double lost = 0.0;
-  for (const Response& response : bodies.responses())
-    for (const PortResponse& port : response.ports) lost -= port.work;
+  std::set<std::pair<int, int>> touched;
   for (const Joint& joint : joints) {
+    for (const Side& side : joint.sides)
+      if (!joint.tied() && touched.emplace(side.body, side.port).second)
+        lost -= bodies.response(side.body).ports[index(side.port)].work;
     const double told = friction_told(joint, bodies);
     if (told > 0.0) lost -= told - joint.contact.rubbed[index(joint.role.kinematic)];
   }

@@ -17,9 +17,9 @@ void EventLog::on_event(const RunEvent& event) {
   line["values"] = nlohmann::ordered_json::object();
   for (const auto& [name, value] : event.values) line["values"][name] = value;
   // Names and texts may come from elsewhere: bytes that are not UTF-8 are replaced, never thrown
-  // upon.
-  file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  file_.append("\n");
+  // upon. With its end at once: where that alone cannot be written, the next event, of the failure,
+  // would stand in the same line.
+  file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
   file_.flush();
 }
 

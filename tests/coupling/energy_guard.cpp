@@ -64,7 +64,7 @@ TEST(EnergyGuard, RefusesWindowsInWhichContactTakesMuch) {
   struct Case {
     double share, bound;  // guard's, and of what may be taken
   };
-  for (const Case& is : {Case{0.01, 5.0e-3}, {5.0e-4, 5.0e-4}, {1.0, 0.1}}) {
+  for (const Case& is : {Case{0.01, 2.0e-2}, {5.0e-4, 2.0e-3}, {1.0, 0.4}}) {
     EnergyGuard guard(is.share, {false});
     const double below = 990.0 * is.bound, above = 1010.0 * is.bound;
     EXPECT_FALSE(guard.loses(std::vector{holding(0.0, 0.0)}, above)) << "nothing to compare with";
