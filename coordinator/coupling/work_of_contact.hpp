@@ -12,7 +12,7 @@ namespace abut {
 double friction_told(const Joint& joint, const Bodies& bodies);
 
 /// [J] that the bodies have lost to each other in the window that they answered last: what forces
-/// on their ports took beside friction. Negative: they gained it.
+/// on ports that touch took beside friction; those of ties are left out. Negative: they gained it.
 double lost_to_contact(std::span<const Joint> joints, const Bodies& bodies);
 
 }  // namespace abut
