@@ -86,14 +86,20 @@ class Resume(SystemTest):
         self.end(run)
         self.assertEqual(self.marked_after(3.0), [], "solvers end with their coordinator")
 
-    def kill_a_solver(self):
-        """One that is there: while bodies are started again there may be none for a while."""
-        deadline = time.monotonic() + 10.0
-        solvers = []
-        while not solvers:
+    def kill_a_solver(self, run) -> bool:
+        """One that is there: while bodies are started again there may be none for a while, and none
+        any more when the run has ended, which is then told."""
+        deadline = time.monotonic() + 60.0
+        while run.poll() is None:
             self.assertLess(time.monotonic(), deadline)
-            solvers = [pid for pid in marked(self.mark) if is_solver(pid)]
-        os.kill(solvers[0], signal.SIGKILL)
+            for pid in filter(is_solver, marked(self.mark)):
+                try:
+                    os.kill(pid, signal.SIGKILL)
+                    return True
+                except ProcessLookupError:  # it has ended since
+                    pass
+            time.sleep(0.003)
+        return False
 
     def assert_same(self, whole: Path, out: Path):
         for path in sorted(whole.rglob("*")):
@@ -150,7 +156,7 @@ class Kills(Resume):
         whole = self.run_whole(self.scene, *checkpoints(50))
         run = self.begin(self.scene, *checkpoints(50))
         self.assertTrue(self.come_to(run, 5.0))
-        self.kill_a_solver()
+        self.assertTrue(self.kill_a_solver(run))
         ended = self.end(run)
         self.assertEqual(ended.returncode, 3)
         self.assertRegex(ended.stderr, rf"abut resume {re.escape(str(self.out))} goes on from \d")
@@ -162,9 +168,8 @@ class Kills(Resume):
         run = self.begin(self.scene, *checkpoints(50), "--set", "network.on_lost_body=restart")
         killed = 0
         for until in (3.0, 8.0):
-            if not self.come_to(run, until):  # a quick machine has come to the end meanwhile
-                break
-            self.kill_a_solver()
+            if not self.come_to(run, until) or not self.kill_a_solver(run):
+                break  # a quick machine has come to the end meanwhile
             killed += 1
             time.sleep(0.3)
         self.assertGreater(killed, 0)
