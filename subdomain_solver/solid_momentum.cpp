@@ -83,7 +83,8 @@ std::optional<Failed> SolidInterior::turned_otherwise(const Vector& momentum, do
 }
 
 /// Forces of ties [N] (port values) that accelerations do not know become none: they are constant
-/// in steps, and pass whole. Tied surfaces have mass, so nothing stands where they hold it.
+/// in steps, and pass whole. Nodes without mass, where a tied side meets one that may touch, stand
+/// where forces of the step before hold them, until the step moves them.
 void SolidInterior::leave_out_unknown(std::vector<double>& forces) const {
   if (!parts_.scheme.integrator->able().accelerates_without_ties) return;
   for (std::size_t p = 0; p < ports_.size(); ++p)

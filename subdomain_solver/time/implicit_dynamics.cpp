@@ -228,7 +228,9 @@ ImplicitDynamics::ImplicitDynamics(const Problem& problem, const Options& option
       inertial_(problem.model->dofs(), problem.supports, problem.model->massless()),
       layer_(problem),
       contact_(free_, *solver_),
-      lag_(options.weights, mass_, inertial_.list()) {
+      lag_(options.weights, mass_, inertial_.list(),
+           options.accelerations == Accelerations::steady ? problem.model->massless()
+                                                          : std::vector<int>()) {
   ABUT_ASSERT(options.accelerations != Accelerations::summed || options.weights.is_trapezoidal());
   mass_ = mass_matrix(*problem.model, options.mass);
   if (!layer_.empty()) of_mass_.answer.setZero(problem.model->dofs());

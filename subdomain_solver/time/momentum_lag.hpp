@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "subdomain_solver/model.hpp"
@@ -12,21 +13,24 @@ namespace abut {
 class MomentumLag {
  public:
   /// `mass` [kg] (dofs, dofs) and `inertial`, the free coordinates that have mass, must outlive it.
+  /// `layer`: those without, where forces act that accelerations do not know.
   MomentumLag(const AlphaWeights& weights, const SparseMatrix& mass,
-              const std::vector<int>& inertial)
-      : weights_(weights), mass_(mass), inertial_(inertial) {}
+              const std::vector<int>& inertial, std::vector<int> layer)
+      : weights_(weights), mass_(mass), inertial_(inertial), layer_(std::move(layer)) {}
 
   /// Whether steps of these weights hold anything back.
   static bool exists(const AlphaWeights& weights) {
     return !weights.is_newmark() || weights.gamma != 0.5;
   }
-  /// [kg m/s] (dofs) where `external` [N] (dofs) acts now; step [s]: of the scheme.
+  /// [kg m/s] (dofs) where `external` [N] (dofs), as far as accelerations know of it, acts now;
+  /// step [s]: of the scheme.
   void find(const Motion& motion, double step, const Vector& external, Vector& out) const;
 
  private:
   AlphaWeights weights_;
   const SparseMatrix& mass_;
   const std::vector<int>& inertial_;
+  std::vector<int> layer_;
   mutable Vector inertia_;  // [N] (dofs)
 };
 
