@@ -83,20 +83,37 @@ bool BehindRows::leaves_out(Edge edge, std::int32_t group) const {
 }
 
 /// Of a point those to facets that look along its way out, or aside: it is not to leave through the
-/// other side, where what it belongs to would stay stuck.
+/// other side, where what it belongs to would stay stuck. Of an edge those to edges that it does
+/// not pass on their outer side: one with an end behind would cut deeper into a rim beside it.
 bool BehindRows::leaves_out(const FeaturePair& pair, const Places& places) const {
   if (behind_.empty()) return false;
   const auto& p = pair.points;
   const std::vector<std::int32_t>& group = surfaces_.skin().group;
-  if (pair.kind == FeatureKind::edge_edge)
-    return leaves_out({p[0], p[1]}, group[index(p[2])]) ||
-           leaves_out({p[2], p[3]}, group[index(p[0])]);
+  if (pair.kind == FeatureKind::edge_edge) {
+    const Edge one{p[0], p[1]}, other{p[2], p[3]};
+    const bool behind = leaves_out(one, group[index(p[2])]) || leaves_out(other, group[index(p[0])]);
+    return behind && !passes_outside(one, other, places);
+  }
   const Behind* what = known({p[0], -1}, group[index(p[1])]);
   if (what == nullptr) return false;
   const FeaturePoints x = abut::places(pair, places);
   const Eigen::Vector3d normal = facet_normal(surfaces_.skin().dim, x);
   if (normal.dot(what->out) > -same_way * normal.norm()) return true;
   return feature_distance(pair.kind, surfaces_.skin().dim, x).distance <= rounding_;
+}
+
+/// Whether the way from an edge to another one leads out of that one's body and into its own.
+bool BehindRows::passes_outside(const Edge& one, const Edge& other, const Places& places) const {
+  if (known(one, surfaces_.skin().group[index(other[0])]) != nullptr ||
+      known(other, surfaces_.skin().group[index(one[0])]) != nullptr)
+    return false;
+  const FeaturePair pair{FeatureKind::edge_edge, {one[0], one[1], other[0], other[1]}};
+  const FeaturePoints x = abut::places(pair, places);
+  const FeatureDistance found = feature_distance(pair.kind, 3, x);
+  if (found.distance <= rounding_) return false;
+  const Eigen::Vector3d way = found.difference(x) / found.distance;
+  return way.dot(sides_.edge_normal(places, other[0], other[1])) > same_way &&
+         way.dot(sides_.edge_normal(places, one[0], one[1])) < -same_way;
 }
 
 // ---- what is behind -----------------------------------------------------------------------------

@@ -61,6 +61,8 @@ class BehindRows {
 
   const Behind* known(std::array<std::int32_t, 2> points, std::int32_t group) const;
   bool leaves_out(std::array<std::int32_t, 2> edge, std::int32_t group) const;
+  bool passes_outside(const std::array<std::int32_t, 2>& one,
+                      const std::array<std::int32_t, 2>& other, const Places& places) const;
   SignedSide side_of(const SkinTrees& trees, const Places& places, const Behind& what) const;
   bool is_before_another(const SkinTrees& trees, const Places& places, Behind what,
                          double depth) const;

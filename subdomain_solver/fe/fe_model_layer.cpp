@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,10 +49,14 @@ bool is_held(FeModel& model, std::size_t massless) {
 /// Of its mass, by how much a node may gain or lose so that centres of mass are one; less than
 /// roundings of places is none.
 constexpr double most_tilt = 0.9, least_tilt = 1.0e-12;
+/// Of the radius of gyration: by how much the centres may differ all the same. What flies would
+/// change its angular momentum by more than bodies that turn have.
+constexpr double most_apart = 0.05;
 
 /// `whole` [kg] (dofs), all mass on the nodes, made lighter on one side and heavier on the other so
-/// that in every direction its centre is that of `layered`, which has the same sum [M.150].
-Vector with_centre_of(const Mesh& mesh, const Vector& whole, const Vector& layered) {
+/// that in every direction its centre is that of `layered`, which has the same sum [M.150]. None:
+/// they are too far apart for that.
+std::optional<Vector> with_centre_of(const Mesh& mesh, const Vector& whole, const Vector& layered) {
   const Eigen::Index dim = mesh.dim, nodes = whole.size() / dim;
   const Eigen::Map<const Eigen::MatrixXd> points(mesh.points.data(), dim, nodes);
   Vector out = whole;
@@ -64,7 +69,12 @@ Vector with_centre_of(const Mesh& mesh, const Vector& whole, const Vector& layer
     Eigen::VectorXd tilt = arms.transpose() * slope;
     const double most = tilt.cwiseAbs().maxCoeff();
     if (!(most > least_tilt)) continue;
-    if (most > most_tilt) tilt *= most_tilt / most;
+    if (most > most_tilt) {
+      const double left = (1.0 - most_tilt / most) * shift.norm() / mass.sum();
+      const double gyration = std::sqrt(arms.colwise().squaredNorm().dot(mass) / mass.sum());
+      if (left > most_apart * gyration) return std::nullopt;
+      tilt *= most_tilt / most;
+    }
     out(Eigen::seqN(i, nodes, dim)) += mass.cwiseProduct(tilt);
   }
   return out;
@@ -99,7 +109,20 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
           "mass, as "
           "contact needs it",
           "mesh", "Make the mesh three elements across, or give fewer ports contact.");
+    whole_ = lumped_;
+    lump_mass();
+    // What is held, and what is round, has no angular momentum to keep.
+    if (mesh_.dim > 1 && held.empty() && frames_.empty() && !round()) {
+      std::optional<Vector> centred = with_centre_of(mesh_, whole_, lumped_);
+      if (!centred)
+        throw InputError(
+            "has a surface that leaves most of its mass on one side while it is free of mass, as "
+            "contact needs it",
+            "mesh", "Make the mesh three elements across, or give fewer ports contact.");
+      whole_ = std::move(*centred);
+    }
   } catch (const InputError&) {
+    if (whole_.size() > 0) lumped_ = std::exchange(whole_, Vector());
     bare_.clear();
     massless_.clear();
     held_.clear();
@@ -109,11 +132,6 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     layer_measures_.clear();
     throw;
   }
-  whole_ = lumped_;
-  lump_mass();
-  // What is held, and what is round, has no angular momentum to keep.
-  if (mesh_.dim > 1 && held.empty() && frames_.empty() && !round())
-    whole_ = with_centre_of(mesh_, whole_, lumped_);
 }
 
 /// Cells with bare nodes, and who takes the mass of those that have no other nodes.
