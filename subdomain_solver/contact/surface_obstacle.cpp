@@ -286,8 +286,10 @@ void SurfaceObstacle::begin_slip(int i, std::span<const double> anchor) {
 void SurfaceObstacle::end_slip(std::span<const double> reaction, std::span<double> anchor) {
   motion_->interpolate(motion_->u, time_, anchor);
   give_way(reaction);
-  for (std::size_t v = 0; v < pose_.size(); ++v)
-    anchor[near_.values()[v]] = pose_[v] - near_.points[v];
+  // What was looked up as near beside these must not matter, not even by roundings: a run that goes
+  // on from a checkpoint looks it up anew.
+  for (std::size_t v = 0; yields() && v < zone_.size(); ++v)
+    anchor[zone_[v]] = pose_[zone_near_[v]] - near_.points[zone_near_[v]];
 }
 
 void SurfaceObstacle::find_begin(std::vector<double>& places) const {
