@@ -71,7 +71,7 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
   if (!mesh.sides.contains(name)) return geometry;
   std::vector<double>& normals = geometry.normals;
   if (dim > 1) geometry.offsets.push_back(0);
-  double area = 0.0;
+  double size = 0.0;
   std::vector<std::int32_t> places;
   const SidePoints side = SidePoints::of(model, name);
   for (const SidePoints::FacetPoints& facet : side.facets) {
@@ -87,7 +87,7 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
       }
     }
     if (dim > 1) add_parts(mesh.dim, places, geometry);
-    for (const SidePoints::Point& point : facet.points) area += point.area;
+    for (const SidePoints::Point& point : facet.points) size += point.size;
   }
   normalise(normals, dim);
   if (std::ranges::all_of(geometry.parts, [](std::int32_t parts) { return parts == 1; }))
@@ -100,7 +100,7 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
     return geometry;
   }
   const double facets = static_cast<double>(std::max<std::size_t>(1, side.facets.size()));
-  geometry.spacing = std::pow(area / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
+  geometry.spacing = std::pow(size / facets, 1.0 / std::max(1.0, static_cast<double>(dim) - 1.0));
   return geometry;
 }
 

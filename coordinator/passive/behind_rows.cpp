@@ -26,6 +26,8 @@ constexpr double facing = -0.1;
 constexpr double beside = 0.5;
 /// The way out of the step before goes on where directions are apart by less than that: cosine.
 constexpr double same_way = 0.3;
+/// Facets of a rim look apart by more than 4 degrees, each by half of that from their mean: cosine.
+constexpr double half_a_rim = 0.9995;
 /// Ways out that go on so are before those through facets that face the point, and others.
 constexpr int same_way_rank = 3;
 /// Ways out are looked for so many times as far as the deepest goes: the nearest facet need not be
@@ -85,14 +87,15 @@ bool BehindRows::leaves_out(Edge edge, std::int32_t group) const {
 /// Of a point those to facets that look along its way out, or aside: it is not to leave through the
 /// other side, where what it belongs to would stay stuck. Of an edge those to edges that it does
 /// not pass on their outer side: one with an end behind would cut deeper into a rim beside it.
-bool BehindRows::leaves_out(const FeaturePair& pair, const Places& places) const {
+bool BehindRows::leaves_out(const SkinTrees& trees, const FeaturePair& pair,
+                            const Places& places) const {
   if (behind_.empty()) return false;
   const auto& p = pair.points;
   const std::vector<std::int32_t>& group = surfaces_.skin().group;
   if (pair.kind == FeatureKind::edge_edge) {
-    const Edge one{p[0], p[1]}, other{p[2], p[3]};
-    const bool behind = leaves_out(one, group[index(p[2])]) || leaves_out(other, group[index(p[0])]);
-    return behind && !passes_outside(one, other, places);
+    const bool behind = leaves_out({p[0], p[1]}, group[index(p[2])]) ||
+                        leaves_out({p[2], p[3]}, group[index(p[0])]);
+    return behind && !passes_outside(trees, pair, places);
   }
   const Behind* what = known({p[0], -1}, group[index(p[1])]);
   if (what == nullptr) return false;
@@ -102,18 +105,32 @@ bool BehindRows::leaves_out(const FeaturePair& pair, const Places& places) const
   return feature_distance(pair.kind, surfaces_.skin().dim, x).distance <= rounding_;
 }
 
-/// Whether the way from an edge to another one leads out of that one's body and into its own.
-bool BehindRows::passes_outside(const Edge& one, const Edge& other, const Places& places) const {
-  if (known(one, surfaces_.skin().group[index(other[0])]) != nullptr ||
-      known(other, surfaces_.skin().group[index(one[0])]) != nullptr)
-    return false;
-  const FeaturePair pair{FeatureKind::edge_edge, {one[0], one[1], other[0], other[1]}};
+/// Whether an edge with an end behind a surface passes a rim of that one outside of it: on both
+/// ways between them, where they are nearest to each other.
+bool BehindRows::passes_outside(const SkinTrees& trees, const FeaturePair& pair,
+                                const Places& places) const {
+  const Edge first{pair.points[0], pair.points[1]}, second{pair.points[2], pair.points[3]};
+  const std::int32_t one = surfaces_.skin().group[index(first[0])];
+  const std::int32_t other = surfaces_.skin().group[index(second[0])];
+  if (known(first, other) != nullptr || known(second, one) != nullptr) return false;
   const FeaturePoints x = abut::places(pair, places);
   const FeatureDistance found = feature_distance(pair.kind, 3, x);
   if (found.distance <= rounding_) return false;
-  const Eigen::Vector3d way = found.difference(x) / found.distance;
-  return way.dot(sides_.edge_normal(places, other[0], other[1])) > same_way &&
-         way.dot(sides_.edge_normal(places, one[0], one[1])) < -same_way;
+  const auto& w = found.weights;
+  const Eigen::Vector3d at = w[0] * x[0] + w[1] * x[1], there = -w[2] * x[2] - w[3] * x[3];
+  const bool rim = (leaves_out(first, other) && is_rim(trees, places, second, there)) ||
+                   (leaves_out(second, one) && is_rim(trees, places, first, at));
+  return rim && side_of(trees, places, at, other).gap > rounding_ &&
+         side_of(trees, places, there, one).gap > rounding_;
+}
+
+/// Whether the facets of an edge look apart there. Across others what is behind may slide.
+bool BehindRows::is_rim(const SkinTrees& trees, const Places& places, const Edge& edge,
+                        const Eigen::Vector3d& at) const {
+  const std::int32_t facet = trees.closest_facet(surfaces_.skin().group[index(edge[0])], places, at,
+                                                 surfaces_.shortest_edge());
+  return facet >= 0 && sides_.facet_normal(places, facet)
+                               .dot(sides_.edge_normal(places, edge[0], edge[1])) < half_a_rim;
 }
 
 // ---- what is behind -----------------------------------------------------------------------------
@@ -166,17 +183,21 @@ bool BehindRows::is_before_another(const SkinTrees& trees, const Places& places,
 /// Of a surface that ends somewhere only so far as its facets are long: what is behind it is not
 /// always in its body.
 SignedSide BehindRows::side_of(const SkinTrees& trees, const Places& places,
-                               const Behind& what) const {
+                               const Eigen::Vector3d& x, std::int32_t group) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d& x = places[index(what.points[0])];
-  const double reach = closed_[index(what.group)] != 0 ? infinity : surfaces_.shortest_edge();
-  const std::int32_t facet = trees.closest_facet(what.group, places, x, reach);
+  const double reach = closed_[index(group)] != 0 ? infinity : surfaces_.shortest_edge();
+  const std::int32_t facet = trees.closest_facet(group, places, x, reach);
   SignedSide side;
   side.gap = infinity;
   if (facet < 0) return side;
   side = sides_.side(places, x, std::span(&facet, 1));
   if (side.border && side.gap > rounding_) side.gap = infinity;
   return side;
+}
+
+SignedSide BehindRows::side_of(const SkinTrees& trees, const Places& places,
+                               const Behind& what) const {
+  return side_of(trees, places, places[index(what.points[0])], what.group);
 }
 
 /// Whether a point is inside, or nearer than `least`, or has passed to another side than that
@@ -215,7 +236,7 @@ std::vector<BehindRows::Behind> BehindRows::edges_through(SkinTrees& trees, cons
     add(skin.edges[index(each.edge)], skin.group[index(skin.facets[index(each.facet)][0])]);
   near_features(trees, places, places, least, choice_, pairs_);
   for (const FeaturePair& pair : pairs_) {
-    if (pair.kind != FeatureKind::edge_edge || leaves_out(pair, places)) continue;
+    if (pair.kind != FeatureKind::edge_edge || leaves_out(trees, pair, places)) continue;
     if (feature_distance(pair.kind, skin.dim, abut::places(pair, places)).distance > least)
       continue;
     add({pair.points[0], pair.points[1]}, skin.group[index(pair.points[2])]);

@@ -32,8 +32,9 @@ class BehindRows {
   void begin(SkinTrees& trees, const Places& places);
   /// A step was taken: what is out is no longer behind.
   void accept(SkinTrees& trees, const Places& places);
-  /// Whether a pair's distance is one of those that are not kept in a step from `places`.
-  bool leaves_out(const FeaturePair& pair, const Places& places) const;
+  /// Whether a pair's distance is one of those that are not kept in a step from `places`, which the
+  /// trees' boxes hold.
+  bool leaves_out(const SkinTrees& trees, const FeaturePair& pair, const Places& places) const;
   /// Adds the rows of a step.
   void find(SkinTrees& trees, const Places& from, std::vector<DistanceRow>& rows);
   /// How many are deeper at the end of a step than at its begin, and rows of there.
@@ -61,8 +62,11 @@ class BehindRows {
 
   const Behind* known(std::array<std::int32_t, 2> points, std::int32_t group) const;
   bool leaves_out(std::array<std::int32_t, 2> edge, std::int32_t group) const;
-  bool passes_outside(const std::array<std::int32_t, 2>& one,
-                      const std::array<std::int32_t, 2>& other, const Places& places) const;
+  bool passes_outside(const SkinTrees& trees, const FeaturePair& pair, const Places& places) const;
+  bool is_rim(const SkinTrees& trees, const Places& places,
+              const std::array<std::int32_t, 2>& edge, const Eigen::Vector3d& at) const;
+  SignedSide side_of(const SkinTrees& trees, const Places& places, const Eigen::Vector3d& x,
+                     std::int32_t group) const;
   SignedSide side_of(const SkinTrees& trees, const Places& places, const Behind& what) const;
   bool is_before_another(const SkinTrees& trees, const Places& places, Behind what,
                          double depth) const;

@@ -48,7 +48,7 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
       ends_(surfaces, thickness) {}
 
 bool NearRows::leaves_out(const FeaturePair& pair, const Places& from) const {
-  return own_.leaves_out(pair) || behind_.leaves_out(pair, from);
+  return own_.leaves_out(pair) || behind_.leaves_out(trees_, pair, from);
 }
 
 void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {

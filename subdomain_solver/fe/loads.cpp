@@ -60,7 +60,8 @@ SidePoints SidePoints::of(const FeModel& model, const std::string& side) {
       const Eigen::Vector3d end(facet.local == 0 ? -1.0 : 1.0, 0.0, 0.0);  // of a line
       const Eigen::MatrixXd tangents = x * Eigen::Map<const Rows>(dn, table.nodes, table.dim);
       const Eigen::Vector3d area = dim == 1 ? end : directed_area(tangents);
-      point.area = area.norm() * point.weight * depth(model, position(0));
+      point.size = area.norm() * point.weight;
+      point.area = point.size * depth(model, position(0));
       point.normal = area.normalized();
       f.points.push_back(std::move(point));
     }

@@ -20,6 +20,7 @@ struct SidePoints {
   struct Point {
     std::array<double, 3> position = {0.0, 0.0, 0.0};  // [m] reference
     double area = 0.0;                                 // [m^2] reference, weight included
+    double size = 0.0;  // the same of the mesh alone, in the plane [m]: whatever depth it has
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // outward unit normal, reference
     std::vector<double> n, dn;                         // of the facet's element
     double weight = 0.0;                               // of the quadrature rule

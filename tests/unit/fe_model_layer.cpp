@@ -128,5 +128,20 @@ TEST_P(Layers, RefuseWhereNothingMovesThatCouldTakeIt) {
   EXPECT_THROW(layered.make_massless(s.bare, s.held), InputError);
 }
 
+/// One cell that nothing holds would have its mass on one side, and turn about that.
+TEST(LayersOfWhatFlies, KeepTheirMassWhereTheCentreWouldMove) {
+  for (const char* element : {"quad4", "tri3", "hex8", "tet4"}) {
+    SCOPED_TRACE(element);
+    FeModel one = body(element, 1), three = body(element, 3);
+    const std::string top = one.mesh().dim == 3 ? "front" : "top";
+    const Vector before = one.lumped_mass();
+    EXPECT_THROW(one.make_massless(dofs_of(one, top), {}), InputError);
+    EXPECT_EQ(one.lumped_mass(), before);
+    EXPECT_EQ(one.whole_mass(), before);
+    EXPECT_TRUE(one.massless().empty());
+    EXPECT_NO_THROW(three.make_massless(dofs_of(three, top), {}));
+  }
+}
+
 }  // namespace
 }  // namespace abut::fe_model_layer_tests

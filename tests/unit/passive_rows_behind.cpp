@@ -186,5 +186,19 @@ TEST(RowsBehind, HoldEdgesInSpace) {
   EXPECT_GT(pair.offended(crossed, crossed - 0.8 * out), 0);
 }
 
+/// A box stands on an edge in a plate, beside a rim of it: one of its faces goes up outside of the
+/// rim. What is behind must not cut the rim on its way out.
+TEST(RowsBehind, KeepFacesOffRimsBesideThem) {
+  const double part = 1.0 / std::sqrt(5.0);  // that face climbs by 2 on 1
+  const std::string turned =
+      fmt::format("map: [\"{0} * (x - 2 * z)\", \"y\", \"{0} * (2 * x + z)\"], ", number(part));
+  Pair pair{rigid("plate", "boundary", "", {1.0, 1.0, 0.5}, {1, 1, 1}),
+            rigid("box", "boundary", turned, {1.0, 0.5, 1.0}, {1, 1, 1})};
+  const Vector inside(0.9, 0.25, 0.5 - depth);  // the rim is at x = 1, which the face passes at .6
+  EXPECT_FALSE(pair.begin(inside).empty());
+  EXPECT_EQ(pair.offended(inside, inside + Vector(0, 0, 0.2)), 0);
+  EXPECT_GT(pair.offended(inside, inside + Vector(0.08, 0, 0)), 0);
+}
+
 }  // namespace
 }  // namespace abut::passive_rows_behind_tests

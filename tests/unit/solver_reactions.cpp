@@ -414,5 +414,23 @@ TEST(ReactionsInMotion, OfAPortUnderForceHoldAgainstIt) {
   }
 }
 
+/// What stands for the size of a port's facets is that of the mesh, whatever its bodies have across
+/// the plane: how near something is seen depends on it.
+TEST(Ports, HaveTheSpacingOfTheMeshInAllPlanes) {
+  for (const std::string& plane : planes_of("quad4")) {
+    for (const char* thickness : {"", "thickness: 1.0e-3, ", "thickness: 50.0, "}) {
+      if (plane == "axisymmetric" && *thickness != '\0') continue;  // it has none
+      SCOPED_TRACE(plane + " " + thickness);
+      const auto part = Part{.plane = plane,
+                             .integrator = "newmark: {step: 0.1}",
+                             .options = thickness,
+                             .more = "    ports: {top: {side: top}, right: {side: right}}\n"}
+                            .build();
+      for (const auto& port : part->describe().ports)
+        EXPECT_NEAR(port.geometry.spacing, 0.5, roundoff(20.0, 0.5)) << port.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace abut::solver_reactions_tests
