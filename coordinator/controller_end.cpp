@@ -1,6 +1,7 @@
 // How and why a run ends, and what its end says of its bodies.
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,7 @@ void Controller::tell_losses(const GivenUp& given_up) {
   int coarsest = 0;
   for (int b = 0; b < bodies_.count(); ++b) {
     const Description& body = bodies_.describe(b);
+    if (!std::isfinite(body.mass)) continue;  // what drives it works through it
     const double passive = index(b) < given_up.taken.size() ? given_up.taken[index(b)] : 0.0;
     const double own = -guard_.unexplained(b) - passive;
     lost -= own;

@@ -221,6 +221,30 @@ bodies:
         lost = -measures["energy.total.relative_drift_end"] * measures["energy.total.begin"]
         self.assertAlmostEqual(float(told[1]), lost, delta=5.1e-3 * lost)  # three digits
 
+    def test_tools_damp_nothing(self):
+        # What drives a tool is not what its steps take.
+        scene = self.folder / "scene.yaml"
+        scene.write_text("""
+time: {end: 5.0e-3, window: 1.0e-4}
+bodies:
+  block:
+    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [0.2, 0.1], elements: [8, 4],
+                                                  element: quad4}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e+7, poissons_ratio: 0.3, density: 1000.0}}
+    integrator: {central_difference: {step: 5.0e-5}}
+    ports: {face: left}
+  ram:
+    model: {rigid_tool: {dimension: 2, way: ["5 * t", "0"], mesh: {rectangle: {
+      lengths: [0.1, 0.3], elements: [1, 1], element: quad4}}}}
+    initial: {position: [-0.101, -0.1]}
+    ports: {face: right}
+interfaces:
+  blow: {sides: [block.face, ram.face], contact: {friction: 0.2}}
+""", encoding="utf-8")
+        ran = self.succeed(self.abut("run", scene, "--local", "--out", self.out))
+        self.assertNotIn("took", ran.stderr)
+        self.assertGreater(float(row(ran.stdout, "end")[3]), 100.0)  # [J] of work by the ram
+
     def test_quiet_runs_say_nothing(self):
         said = self.run_of(TWO_BARS, "--quiet")
         self.assertEqual((said.stdout, said.stderr), ("", ""))
