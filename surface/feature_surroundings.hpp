@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,10 @@ class FeatureSurroundings {
   /// length 1 from the second side's closest point to that of the first.
   bool goes_nearer(const FeaturePair& pair, const std::array<double, 4>& weights, int side,
                    const Eigen::Vector3d& way, double sine, const PartOfWay& places) const;
+  /// All pairs of features of facets that have a point of the one side and of the other; some more
+  /// than once.
+  void visit_around(const FeaturePair& pair,
+                    const std::function<void(const FeaturePair&)>& visit) const;
 
  private:
   /// Numbers by place, each place with a list of its own.
@@ -49,9 +54,11 @@ class FeatureSurroundings {
     void add(const std::vector<std::int32_t>& list);
   };
   std::span<const std::int32_t> beside(std::int32_t one, std::int32_t other) const;
+  std::vector<std::int32_t> facets_at(const FeaturePair& pair, int side) const;
 
   const Skin& skin_;
   Lists around_;  // (points) the other points of a point's facets
+  Lists facets_;  // (points) a point's facets
   Lists beside_;  // (edges) the third points of an edge's facets
 };
 

@@ -84,6 +84,23 @@ bool BehindRows::leaves_out(Edge edge, std::int32_t group) const {
          (any_edges_ && known(edge, group) != nullptr);
 }
 
+bool BehindRows::holds(const FeaturePair& pair) const {
+  if (behind_.empty()) return false;
+  const auto& p = pair.points;
+  const std::vector<std::int32_t>& group = surfaces_.skin().group;
+  if (pair.kind == FeatureKind::node_facet)
+    return known({p[0], -1}, group[index(p[1])]) != nullptr;
+  return leaves_out({p[0], p[1]}, group[index(p[2])]) ||
+         leaves_out({p[2], p[3]}, group[index(p[0])]);
+}
+
+void BehindRows::let_beside(const FeaturePair& pair) {
+  const auto& p = pair.points;
+  const std::int32_t other = pair.kind == FeatureKind::node_facet ? -1 : p[1];
+  const std::int32_t group = surfaces_.skin().group[index(p[index(pair.first_side())])];
+  beside_.push_back({.points = {p[0], other}, .group = group, .comes = true});
+}
+
 /// Of a point those to facets that look along its way out, or aside: it is not to leave through the
 /// other side, where what it belongs to would stay stuck. Of an edge those to edges that it does
 /// not pass on their outer side: one with an end behind would cut deeper into a rim beside it.
@@ -248,12 +265,21 @@ std::vector<BehindRows::Behind> BehindRows::edges_through(SkinTrees& trees, cons
 void BehindRows::accept(SkinTrees& trees, const Places& places) {
   if (behind_.empty()) return;
   const Skin& skin = surfaces_.skin();
+  keep_one_each(beside_, &Behind::key);
+  std::erase_if(beside_, [this](const Behind& each) {
+    return known(each.points, each.group) != nullptr;
+  });
+  behind_.insert(behind_.end(), beside_.begin(), beside_.end());
+  beside_.clear();
+  take(std::move(behind_));
   gather(trees, places, places);
   std::vector<Behind> still;
   for (std::size_t k = 0; k < behind_.size(); ++k) {
     Behind& what = behind_[k];
     const WayOut way = way_out(k, places);
-    const bool inside = !what.is_edge() && stays(trees, places, what, way, out_by * thickness_);
+    const double least = what.comes ? rounding_ : out_by * thickness_;
+    const bool inside = !what.is_edge() && stays(trees, places, what, way, least);
+    what.comes = false;
     hold(what, way);
     if (inside) still.push_back(what);
   }
@@ -377,6 +403,7 @@ void BehindRows::see_edge(const Behind& what, const std::array<std::int32_t, 2>&
 }
 
 void BehindRows::find(SkinTrees& trees, const Places& from, std::vector<DistanceRow>& rows) {
+  beside_.clear();
   if (behind_.empty()) return;
   gather(trees, from, from);
   for (std::size_t k = 0; k < behind_.size(); ++k) {

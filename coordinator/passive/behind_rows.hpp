@@ -32,6 +32,11 @@ class BehindRows {
   void begin(SkinTrees& trees, const Places& places);
   /// A step was taken: what is out is no longer behind.
   void accept(SkinTrees& trees, const Places& places);
+  /// Whether one of a pair's features is behind the other one's surface, or on it.
+  bool holds(const FeaturePair& pair) const;
+  /// A pair comes near beside what is held: if its feature is on the surface at the step's end, it
+  /// is held as well from then on.
+  void let_beside(const FeaturePair& pair);
   /// Whether a pair's distance is one of those that are not kept in a step from `places`, which the
   /// trees' boxes hold.
   bool leaves_out(const SkinTrees& trees, const FeaturePair& pair, const Places& places) const;
@@ -48,6 +53,7 @@ class BehindRows {
     double gap = 0.0;                               // [m] along its way out
     Eigen::Vector3d out = Eigen::Vector3d::Zero();  // unit: its way out; zero: not known yet
     std::array<std::int32_t, 2> edge{-1, -1};       // of an edge: the one that it has to pass
+    bool comes = false;                             // beside others, in this step
 
     bool is_edge() const { return points[1] >= 0; }
     auto key() const { return std::pair(points, group); }
@@ -90,6 +96,7 @@ class BehindRows {
   SkinSides sides_;
   std::vector<std::uint8_t> closed_;  // (groups) whether the surface ends nowhere
   std::vector<Behind> behind_;        // ascending by key
+  std::vector<Behind> beside_;        // what comes in this step
   std::vector<std::uint8_t> flags_;   // (points) one of them
   bool any_edges_ = false;
   double reach_ = 0.0;                             // [m] how far ways out are looked for

@@ -36,6 +36,13 @@ FeaturePoints at(const FeaturePair& pair, const NearRows::Places& from, const Ne
   return out;
 }
 
+bool share_a_point(const FeaturePair& pair) {
+  const auto first = pair.points.begin() + pair.first_side();
+  return std::any_of(pair.points.begin(), first, [&](std::int32_t point) {
+    return std::find(first, pair.points.end(), point) != pair.points.end();
+  });
+}
+
 }  // namespace
 
 NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
@@ -89,11 +96,9 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
   for (const FeaturePair& pair : pairs_) {
     if (leaves_out(pair, from)) continue;
     const FeaturePoints before = places(pair, from), after = at(pair, from, to, 1.0);
-    const double distance = feature_distance(pair.kind, dim, before).distance;
-    const double share = distance < close * thickness_ ? kept_when_close : kept;
-    const double least = share * std::min(distance, thickness_);
-    const double part = first_time_within(pair.kind, dim, before, after, least, resolved * least);
-    if (part >= 1.0) continue;
+    const double kept = least(feature_distance(pair.kind, dim, before).distance);
+    const double part = first_time_within(pair.kind, dim, before, after, kept, resolved * kept);
+    if (part >= 1.0 || passes_beside(pair, from, to, part)) continue;
     ++crossed.pairs;
     if (add(pair, from, to, part, rows)) ++crossed.added;
   }
@@ -102,6 +107,45 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
   crossed.pairs += deeper + ends.pairs;
   crossed.added += deeper + ends.added;
   return crossed;
+}
+
+/// [m] that is left of a pair's distance after its step.
+double NearRows::least(double distance) const {
+  const double share = distance < close * thickness_ ? kept_when_close : kept;
+  return share * std::min(distance, thickness_);
+}
+
+/// A corner that slides along a side past the end of that side comes as near to the facet behind
+/// the end as it is to the side. What is behind a surface, or on it, is kept there by its own row.
+bool NearRows::passes_beside(const FeaturePair& pair, const Places& from, const Places& to,
+                             double part) {
+  const int dim = surfaces_.skin().dim;
+  const FeaturePoints x = at(pair, from, to, part);
+  const FeatureDistance found = feature_distance(pair.kind, dim, x);
+  if (!(found.distance > 0.0)) return false;
+  const Eigen::Vector3d way = found.difference(x) / found.distance;
+  const PartOfWay then{from, to, part};
+  if (!surroundings_.goes_nearer(pair, found.weights, 0, way, steep, then) &&
+      !surroundings_.goes_nearer(pair, found.weights, 1, way, steep, then))
+    return false;
+  const FeaturePoints before = places(pair, from), after = at(pair, from, to, 1.0);
+  double nearest = feature_distance(pair.kind, dim, before).distance;
+  bool held_beside = false;
+  surroundings_.visit_around(pair, [&](const FeaturePair& other) {
+    if (share_a_point(other) || own_.leaves_out(other)) return;
+    const double distance = feature_distance(other.kind, dim, places(other, from)).distance;
+    if (distance >= nearest) return;
+    if (behind_.holds(other))
+      held_beside = true;
+    else
+      nearest = distance;
+  });
+  if (held_beside) {
+    behind_.let_beside(pair);
+    return true;
+  }
+  const double kept = least(nearest);
+  return first_time_within(pair.kind, dim, before, after, kept, resolved * kept) >= 1.0;
 }
 
 void NearRows::add_if_closest(const FeaturePair& pair, const Places& from, const Places& to,

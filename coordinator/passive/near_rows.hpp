@@ -53,6 +53,10 @@ class NearRows {
   /// node that slides inside of a flat side by an edge of its partner.
   void add_if_closest(const FeaturePair& pair, const Places& from, const Places& to, double part,
                       std::vector<DistanceRow>& rows);
+  /// Whether a pair that comes as near as that only passes beside what is nearer yet: it may then
+  /// come as near as is left to that one.
+  bool passes_beside(const FeaturePair& pair, const Places& from, const Places& to, double part);
+  double least(double distance) const;
   bool leaves_out(const FeaturePair& pair, const Places& from) const;
   bool known(const DistanceRow& row, const std::vector<DistanceRow>& rows) const;
   void name(const std::vector<DistanceRow>& rows);
