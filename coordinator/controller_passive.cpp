@@ -282,6 +282,7 @@ GivenUp Controller::given_up() const {
           .rigid = passive.rigid,
           .shortest_step = passive.shortest_step,
           .unsettled = passive.unsettled,
+          .unbalanced = passive.unbalanced,
           .normal = passive.normal,
           .friction = passive.friction,
           .damped = passive.damped,

@@ -26,6 +26,7 @@ struct PassiveLedger {
   double deepest = 0.0;        // [m] behind a partner's surface
   double shortest_step = 0.0;  // [s]; 0: none was taken
   std::int64_t unsettled = 0;  // steps of statics after which bodies did not rest yet
+  double unbalanced = 0.0;     // most that such a step left, over the most that any began with
 
   // By body, as long as one has any. [J] of its deforming side's normal contact; [J] that damping
   // and changes of form took from it; steps that it refused
@@ -71,6 +72,7 @@ struct PassiveLedger {
     archive.field("deepest", deepest);
     archive.field("shortest_step", shortest_step);
     archive.field("unsettled", unsettled);
+    archive.field("unbalanced", unbalanced);
   }
 };
 

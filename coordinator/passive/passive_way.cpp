@@ -34,9 +34,11 @@ constexpr double settled = 1.0e-4, nearly_settled = 1.0e-3;
 /// drifts along a way on which nothing else holds it would go farther in vain.
 constexpr double settling_way = 0.5;
 constexpr int loosest = 6;
-/// Settling ends after so many steps in a row that leave more than this share of what held.
+/// Steps are in vain that leave more than this share of what held. Slender bodies are softer by far
+/// than what holds them, so each lets the next one hold four times as loosely, as long as that goes
+/// no farther than this part of the shortest edge. Settling ends after so many more in a row.
+constexpr double in_vain = 0.9, most_way = 0.5;
 constexpr int most_vain_steps = 4;
-constexpr double in_vain = 0.9;
 /// Of a step: ends that are nearer are the same.
 constexpr double same_time = 1.0e-9;
 
@@ -178,12 +180,16 @@ bool PassiveWay::step(double begin, double end, PassiveRecord& record, bool leni
 void PassiveWay::settle(double begin, double end, bool lenient) {
   double left = step_->farthest();  // [m] by which what is out of balance would move a first step
   farthest_ = std::max(farthest_, left);
+  const double way = most_way * surfaces_->shortest_edge();
   double least = left;
-  int most = loosest, vain = 0;
+  int most = loosest, vain = 0, further = 0;
   for (int k = 0; k < most_settling_steps && vain < most_vain_steps; ++k) {
     if (left <= settled * farthest_) return;
     const double free = std::log2(settling_way * farthest_ / left) / 2.0;
-    const int looser = static_cast<int>(std::clamp<double>(free, std::min(1, most), most));
+    int looser = static_cast<int>(std::clamp<double>(free, std::min(1, most), most));
+    const int before = looser;
+    while (looser < std::min(before + further, most) && std::ldexp(left, 2 * looser + 2) < way)
+      ++looser;
     bodies_.save_all();
     if (!step_->settle(begin, end, looser, lenient, ledger_)) {
       bodies_.restore_all();
@@ -192,10 +198,17 @@ void PassiveWay::settle(double begin, double end, bool lenient) {
       continue;
     }
     left = std::ldexp(step_->farthest(), -2 * looser);
-    vain = left > in_vain * least ? vain + 1 : 0;
+    if (left <= in_vain * least)
+      vain = 0;
+    else if (looser == before + further && looser < most)
+      ++further;
+    else
+      ++vain;
     least = std::min(least, left);
   }
-  if (least > nearly_settled * farthest_) ++ledger_.unsettled;
+  if (!(least > nearly_settled * farthest_)) return;
+  ++ledger_.unsettled;
+  ledger_.unbalanced = std::max(ledger_.unbalanced, least / farthest_);
 }
 
 /// Which surfaces press on each other.

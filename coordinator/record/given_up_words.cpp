@@ -36,9 +36,9 @@ std::string windows_words(const GivenUp& up, std::int64_t windows) {
                         share(up.rigid_windows, windows));
   if (up.unsettled > 0)
     text += fmt::format(
-        ", and after {} of their steps bodies did not rest yet: forces on the two sides of a body "
-        "may differ by some per cent",
-        up.unsettled);
+        ", and after {} of their steps bodies did not rest yet: forces that were not in balance "
+        "are up to {:.2g} % of the most that a step began with",
+        up.unsettled, 100.0 * up.unbalanced);
   return text;
 }
 

@@ -103,6 +103,7 @@ struct GivenUp {
   std::int64_t steps = 0, refused = 0, rigid = 0;
   double shortest_step = 0.0;  // [s]
   std::int64_t unsettled = 0;  // steps of statics after which bodies did not rest yet
+  double unbalanced = 0.0;     // most that such a step left, over the most that any began with
   // [J] lost in normal contact, by friction, by damping, at changes of form; given to part bodies
   double normal = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
   double repaid = 0.0;   // [J] that accurate windows gained and that was taken back at their ends

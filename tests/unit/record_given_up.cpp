@@ -65,10 +65,12 @@ TEST(GivenUp, LeavesOutWhatIsNothing) {
 }
 
 TEST(GivenUp, TellsWhereStaticsDidNotRest) {
-  EXPECT_EQ(Told().words({.statics = true, .windows = 6, .unsettled = 4, .largest = 1.0}),
+  const GivenUp up{
+      .statics = true, .windows = 6, .unsettled = 4, .unbalanced = 0.07, .largest = 1.0};
+  EXPECT_EQ(Told().words(up),
             "3 % of the windows were solved passively, without inertia, by forces on nodes that "
             "are right to some hundredths, and after 4 of their steps bodies did not rest yet: "
-            "forces on the two sides of a body may differ by some per cent");
+            "forces that were not in balance are up to 7 % of the most that a step began with");
 }
 
 TEST(GivenUp, NamesTheRemedyThatHelps) {
