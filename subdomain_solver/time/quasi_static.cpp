@@ -13,8 +13,9 @@ namespace {
 /// A part solved in fewer iterations may be followed by one of twice its length.
 constexpr int few_iterations = 5;
 
-/// Of a step's work, in parts of its largest force times its way; and halvings of the step in which
-/// a kink of the force, where material begins to yield, is closed in on.
+/// Of a step's work, in parts of its largest force times its way, or what roundings make of that;
+/// and halvings of the step in which a kink of the force, where material begins to yield, is closed
+/// in on.
 constexpr double work_accuracy = 1.0e-6;
 constexpr int most_bisections = 12;
 
@@ -155,7 +156,8 @@ class QuasiStatic::Balance final : public Equations {
     if (!power(0.5, middle)) return false;
     const double scale =
         std::max({std::abs(whole.at_begin), std::abs(middle), std::abs(whole.at_end)});
-    return add_work(whole, middle, work_accuracy * scale, most_bisections, work);
+    const double noise = o_.problem_.model->roundoff(span_of(b_.q)) * b_.moved.norm();
+    return add_work(whole, middle, std::max(work_accuracy * scale, noise), most_bisections, work);
   }
 
   struct Part {  // of the way, from 0 to 1
