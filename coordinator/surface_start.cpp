@@ -15,6 +15,7 @@
 #include "surface/check.hpp"
 #include "surface/crossings.hpp"
 #include "surface/divided_surface.hpp"
+#include "surface/inside.hpp"
 #include "surface/overlap_places.hpp"
 #include "surface/start_rows.hpp"
 
@@ -101,6 +102,13 @@ std::string remedy(double depth, const NamedSurface& one, const NamedSurface& ot
     text += ", or give one of them initial: {adjust: true}";
   if (depth <= deepest_fit(one, other))
     text += ", or, where a fit is meant, initial: {interference: {over: TIME}}";
+  for (const NamedSurface* side : {&one, &other})
+    if (side->immovable && !is_closed(outside(*side)))
+      text += fmt::format(", or, where {} is a surface alone, turn its facets round: it looks {}",
+                          side->name,
+                          side->geometry.dim == 2
+                              ? "to the right of its lines"
+                              : "to where the nodes of its facets go round anticlockwise");
   return text + ".";
 }
 
@@ -167,6 +175,7 @@ void check_each(const NamedSurface& one, const NamedSurface& other, const std::s
 
 NamedSurface named_surface(const std::string& name, const Description& body, int port) {
   NamedSurface named{name, body.ports[index(port)].geometry};
+  named.immovable = !std::isfinite(body.mass);
   for (const Port& other : body.ports)
     if (&other.geometry != &named.geometry && other.geometry.dim == named.geometry.dim)
       named.beside.push_back(&other.geometry);

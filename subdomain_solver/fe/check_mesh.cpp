@@ -52,8 +52,9 @@ double determinant(const std::array<double, 9>& j, int dim) {
 }
 
 /// Smallest Jacobian of a cell over the points of a table [m^dim].
+/// `sign` -1: the largest one, with the other sign.
 double smallest_jacobian(const Mesh& mesh, std::span<const std::int32_t> nodes,
-                         const Tabulation& table) {
+                         const Tabulation& table, double sign = 1.0) {
   const auto dim = static_cast<Index>(mesh.dim);
   double least = std::numeric_limits<double>::infinity();
   for (Index q = 0; q < static_cast<Index>(table.points); ++q) {
@@ -64,7 +65,7 @@ double smallest_jacobian(const Mesh& mesh, std::span<const std::int32_t> nodes,
       for (Index i = 0; i < dim; ++i)
         for (Index k = 0; k < dim; ++k) j[i * dim + k] += x[i] * dn[k];
     }
-    const double value = determinant(j, mesh.dim);
+    const double value = sign * determinant(j, mesh.dim);
     if (std::isnan(value)) return value;
     least = std::min(least, value);
   }
@@ -104,7 +105,7 @@ void check_shape_of_arrays(const Mesh& mesh, const std::string& where) {
 }
 
 void check_jacobians(const Mesh& mesh, const std::string& where, const CellWords& words) {
-  int bad = 0;
+  int bad = 0, turned = 0;
   std::string first;
   for (Index b = 0; b < mesh.blocks.size(); ++b) {
     const CellBlock& block = mesh.blocks[b];
@@ -118,21 +119,26 @@ void check_jacobians(const Mesh& mesh, const std::string& where, const CellWords
       const std::span<const std::int32_t> nodes = cell_nodes(block, cell);
       const double least =
           std::min(smallest_jacobian(mesh, nodes, nodal), smallest_jacobian(mesh, nodes, inside));
-      if (least > rounding_of(mesh, nodes)) continue;
+      const double rounding = rounding_of(mesh, nodes);
+      if (least > rounding) continue;
+      if (std::min(smallest_jacobian(mesh, nodes, nodal, -1.0),
+                   smallest_jacobian(mesh, nodes, inside, -1.0)) > rounding)
+        ++turned;
       if (bad++ == 0)
         first = fmt::format("{}{}{}, with a Jacobian of {:.3g} m^{}", cell_text(mesh, b, cell),
                             words ? ", " : "", words ? words(b, cell) : "", least, mesh.dim);
     }
   }
-  if (bad > 0) {
-    throw InputError(
-        fmt::format("has {} inverted or degenerate cells of {}, the first is {}", bad,
-                    mesh.cell_count(), first),
-        where,
-        bad == mesh.cell_count()
-            ? "All cells are: their nodes run the wrong way round; reverse the surface or volume."
-            : "Mesh it finer there, or optimise the mesh before the export.");
-  }
+  if (bad == 0) return;
+  const char* remedy = "Mesh it finer there, or optimise the mesh before the export.";
+  if (bad == mesh.cell_count())
+    remedy = turned == bad ? "All cells are: their nodes run the wrong way round; reverse the "
+                             "surface or volume."
+                           : "All cells are, and would be the other way round: their nodes are not "
+                             "in the order that the file's format has for such cells.";
+  throw InputError(fmt::format("has {} inverted or degenerate cells of {}, the first is {}", bad,
+                               mesh.cell_count(), first),
+                   where, remedy);
 }
 
 /// Length of the shortest edge at every node, between corners; infinity at nodes of no cell.

@@ -203,9 +203,12 @@ void InitialSpec::fields(Fields& f) {
   f.optional("velocity", velocity, "m/s",
              "uniform velocity at the start, one number per dimension");
   f.optional("displacement_field", displacement_field, "m",
-             "initial displacement, one expression in x, y, z per dimension");
+             "initial displacement, one expression per dimension in x, y, z, the undeformed place "
+             "in space");
   f.optional("velocity_field", velocity_field, "m/s",
-             "initial velocity, added to velocity, one expression per dimension");
+             "initial velocity, added to velocity, one expression per dimension in x, y, z, the "
+             "undeformed place in space: turning about the body's own origin at (a, b) is "
+             "[\"-w * (y - b)\", \"w * (x - a)\"]");
   f.optional(
       "adjust", adjust, "",
       "whether nodes of the ports that overlap a surface that they may touch are moved out of "

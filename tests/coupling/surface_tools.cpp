@@ -101,8 +101,8 @@ TEST(SurfaceTools, WhatHasNoSideIsRefusedWithTheFacet) {
   expect_words(refusal([&] { gmsh_mesh(file_of(3, cube, cube_sides), "part.msh"); }), {"plane"});
 }
 
-/// A block that falls on a tool, by the tool's shape.
-ResultPtr fall(int dim, const std::string& shape) {
+/// A block that falls on a tool, by the tool's shape, with this side of it.
+ResultPtr fall(int dim, const std::string& shape, const std::string& side = "") {
   SolidText block{.name = "block",
                   .material =
                       "linear_elastic: {youngs_modulus: 1.0e6, poissons_ratio: 0.3, density: "
@@ -117,6 +117,7 @@ ResultPtr fall(int dim, const std::string& shape) {
     block.velocity = {0.2, 0.1, -1.0};
     block.side = "back";
   }
+  if (!side.empty()) block.side = side;
   SolidText box{.name = "box",
                 .dim = dim,
                 .mesh = shape,
@@ -126,6 +127,18 @@ ResultPtr fall(int dim, const std::string& shape) {
                         std::string(dim == 3 ? ", \"0.0\"], " : "], ")};
   return run_solids(0.05, 1.0e-3, {block, box},
                     "  fall: {sides: [block.face, box.face], contact: {friction: 0.3}}\n");
+}
+
+TEST(SurfaceTools, ThatEndSomewhereLookToTheRightOfTheirLines) {
+  const Points ends = {{1, 1, 0}, {0, 1, 0}};
+  const std::string path = testing::TempDir() + "open_tool.msh";
+  std::ofstream(path) << file_of(2, ends, {{0, 1}});
+  const auto up = fall(2, "gmsh: {file: " + path + "}", "boundary");
+  ASSERT_TRUE(up->completed()) << up->end.reason;
+  EXPECT_GT(up->measure("contact.fall.impulse"), 0.0);
+  std::ofstream(path) << file_of(2, ends, {{1, 0}});
+  expect_words(refusal([&] { fall(2, "gmsh: {file: " + path + "}", "boundary"); }),
+               {"lies behind box.face", "turn its facets round", "to the right of its lines"});
 }
 
 TEST(SurfaceTools, DoWhatToolsWithCellsDo) {

@@ -75,6 +75,8 @@ TEST(CheckMesh, RefusesInvertedAndFlatCellsWithNumberAndPosition) {
   mesh = two_squares();
   mesh.blocks[0].nodes = {0, 3, 4, 1, 1, 4, 5, 2};
   expect_words(refusal_of(mesh), {"2 inverted", "wrong way round"});
+  mesh.blocks[0].nodes = {0, 1, 3, 4, 1, 2, 4, 5};  // bow ties
+  expect_words(refusal_of(mesh), {"2 inverted", "not in the order", "file's format"});
   mesh = two_squares();
   mesh.points[3] = std::numeric_limits<double>::quiet_NaN();
   expect_words(refusal_of(mesh), {"cell 1", "nan"});
