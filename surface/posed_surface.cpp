@@ -32,32 +32,35 @@ void nodal_normals(const PosedSurface& surface, std::vector<double>& normals) {
   }
 }
 
+std::array<double, 4> facet_weights(const PosedSurface& surface, int f) {
+  const Corners c = corners(surface, f);
+  if (surface.round) {
+    const double r0 = c.x[0].x(), r1 = c.x[1].x(), ring = std::numbers::pi / 3.0 * area(c);
+    return {ring * (2.0 * r0 + r1), ring * (r0 + 2.0 * r1)};
+  }
+  std::array<double, 4> weights{};
+  if (c.count < 4) {
+    std::fill_n(weights.begin(), c.count, area(c) / c.count);
+    return weights;
+  }
+  // x = c0 + ca a + cb b + cab a b; its Jacobian along the mean normal is j0 + ja a + jb b, and
+  // the integral of N_i = (1 + s a)(1 + t b) / 4 times that over [-1, 1]^2 is j0 + (s ja + t
+  // jb)/3
+  const Eigen::Vector3d ca = 0.25 * (-c.x[0] + c.x[1] + c.x[2] - c.x[3]);
+  const Eigen::Vector3d cb = 0.25 * (-c.x[0] - c.x[1] + c.x[2] + c.x[3]);
+  const Eigen::Vector3d cab = 0.25 * (c.x[0] - c.x[1] + c.x[2] - c.x[3]);
+  const Eigen::Vector3d n = mean_normal(c);
+  const double j0 = ca.cross(cb).dot(n);
+  const double ja = ca.cross(cab).dot(n) / 3.0, jb = cab.cross(cb).dot(n) / 3.0;
+  return {j0 - ja - jb, j0 + ja - jb, j0 + ja + jb, j0 - ja + jb};
+}
+
 void tributary_weights(const PosedSurface& surface, std::vector<double>& weights) {
   weights.assign(index(surface.node_count()), 0.0);
   for (int f = 0; f < surface.facet_count(); ++f) {
-    const Corners c = corners(surface, f);
+    const std::array<double, 4> parts = facet_weights(surface, f);
     const std::span<const std::int32_t> nodes = surface.nodes(f);
-    if (surface.round) {
-      const double r0 = c.x[0].x(), r1 = c.x[1].x(), ring = std::numbers::pi / 3.0 * area(c);
-      weights[nodes[0]] += ring * (2.0 * r0 + r1);
-      weights[nodes[1]] += ring * (r0 + 2.0 * r1);
-      continue;
-    }
-    if (c.count < 4) {
-      for (std::int32_t node : nodes) weights[node] += area(c) / c.count;
-      continue;
-    }
-    // x = c0 + ca a + cb b + cab a b; its Jacobian along the mean normal is j0 + ja a + jb b, and
-    // the integral of N_i = (1 + s a)(1 + t b) / 4 times that over [-1, 1]^2 is j0 + (s ja + t
-    // jb)/3
-    const Eigen::Vector3d ca = 0.25 * (-c.x[0] + c.x[1] + c.x[2] - c.x[3]);
-    const Eigen::Vector3d cb = 0.25 * (-c.x[0] - c.x[1] + c.x[2] + c.x[3]);
-    const Eigen::Vector3d cab = 0.25 * (c.x[0] - c.x[1] + c.x[2] - c.x[3]);
-    const Eigen::Vector3d n = mean_normal(c);
-    const double j0 = ca.cross(cb).dot(n);
-    const double ja = ca.cross(cab).dot(n) / 3.0, jb = cab.cross(cb).dot(n) / 3.0;
-    const double parts[4] = {j0 - ja - jb, j0 + ja - jb, j0 + ja + jb, j0 - ja + jb};
-    for (int i = 0; i < 4; ++i) weights[nodes[i]] += parts[i];
+    for (std::size_t i = 0; i < nodes.size(); ++i) weights[index(nodes[i])] += parts[i];
   }
 }
 

@@ -92,6 +92,10 @@ double longest_edge(const PosedSurface& surface);
 /// Outward unit normals at the nodes, (n, dim): facets by area. Zero at a node without facets.
 void nodal_normals(const PosedSurface& surface, std::vector<double>& normals);
 
+/// [m^(dim-1)] Integrals of a facet's N_j, of which it has as many as nodes, in its mean plane:
+/// exact, closed form. Of round surfaces [m^2], of whole rings.
+std::array<double, 4> facet_weights(const PosedSurface& surface, int f);
+
 /// [m^(dim-1)] (n) w_j = sum over the facets of the integral of N_j, in the facets' mean planes:
 /// exact, closed form. Of round surfaces [m^2], of whole rings.
 void tributary_weights(const PosedSurface& surface, std::vector<double>& weights);

@@ -1,7 +1,9 @@
 #include "subdomain_solver/contact/contact_fields.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "base/index.hpp"
 #include "surface/posed_surface.hpp"
@@ -19,6 +21,37 @@ struct Touch {
   double most = 0.0;
 };
 
+/// Of facets that show a face of second order the forces of its nodes are those of the element's
+/// shapes (1 : 4 : 1 along an edge), not those of the facets: their pressure is known on the
+/// average over the face, and of a node that of its faces by area.
+void smooth_faces(const PortGeometry& geometry, const PosedSurface& now, Touch& t) {
+  if (std::ranges::none_of(geometry.parts, [](std::int32_t parts) { return parts > 1; })) return;
+  std::vector<double> of_faces(t.pressure.size(), 0.0);  // [N] weights times pressures
+  int facet = 0;
+  for (const std::int32_t parts : geometry.parts) {
+    double force = 0.0, area = 0.0;
+    const auto each = [&](const auto& visit) {
+      for (int f = facet; f < facet + parts; ++f) {
+        const std::array<double, 4> weights = facet_weights(now, f);
+        const std::span<const std::int32_t> nodes = now.nodes(f);
+        for (std::size_t i = 0; i < nodes.size(); ++i) visit(index(nodes[i]), weights[i]);
+      }
+    };
+    each([&](std::size_t node, double weight) {
+      force += weight * t.pressure[node];
+      area += weight;
+    });
+    each([&](std::size_t node, double weight) {
+      if (area > 0.0) of_faces[node] += weight * force / area;
+    });
+    facet += parts;
+  }
+  std::vector<double> weights;
+  tributary_weights(now, weights);
+  for (std::size_t a = 0; a < t.pressure.size(); ++a)
+    t.pressure[a] = weights[a] > 0.0 ? of_faces[a] / weights[a] : 0.0;
+}
+
 Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
                std::span<const double> places) {
   Touch t;
@@ -34,8 +67,9 @@ Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
       inward -= t.normals[a * dim + i] * forces[s.first + a * dim + i];
     t.weights[a] *= dim == 2 && !s.geometry->round ? s.thickness : 1.0;
     t.pressure.push_back(t.weights[a] > 0.0 ? inward / t.weights[a] : 0.0);
-    t.most = std::max(t.most, t.pressure.back());
   }
+  smooth_faces(*s.geometry, now, t);
+  for (const double pressure : t.pressure) t.most = std::max(t.most, pressure);
   return t;
 }
 
