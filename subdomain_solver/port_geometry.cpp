@@ -46,6 +46,18 @@ double share(double shape, std::size_t nodes, int dim) {
   return first_order ? shape : 1.0;
 }
 
+/// Facets on the axis of a body of revolution make no ring and have no area: their nodes look as
+/// they do in the plane.
+void add_on_axis(PortGeometry& geometry) {
+  if (!geometry.round || geometry.facets.empty()) return;
+  std::vector<double> in_plane;
+  nodal_normals(posed(geometry), in_plane);
+  for (std::size_t k = 0; k < in_plane.size(); k += 2)
+    if (geometry.normals[k] == 0.0 && geometry.normals[k + 1] == 0.0)
+      std::copy_n(in_plane.begin() + static_cast<std::ptrdiff_t>(k), 2,
+                  geometry.normals.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
 void normalise(std::vector<double>& normals, std::size_t dim) {
   for (std::size_t k = 0; k < normals.size(); k += dim) {
     double length = 0.0;
@@ -89,6 +101,7 @@ PortGeometry port_geometry(const FeModel& model, const std::string& name,
     if (dim > 1) add_parts(mesh.dim, places, geometry);
     for (const SidePoints::Point& point : facet.points) size += point.size;
   }
+  add_on_axis(geometry);
   normalise(normals, dim);
   if (std::ranges::all_of(geometry.parts, [](std::int32_t parts) { return parts == 1; }))
     geometry.parts.clear();
