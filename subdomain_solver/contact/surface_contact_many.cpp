@@ -1,7 +1,9 @@
 // Contact of many rows: near rows are solved for one after the other, and what their forces open
 // is found by the whole compliance, in turns  [M.153].
 
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -146,6 +148,7 @@ bool SurfaceContact::find_many(Compliance& give, bool again) {
     guess_forces();
   }
   double change_of_look = 0.0;
+  std::array<double, most_rounds> changes;
   for (int round = 0; round < most_rounds; ++round) {
     if (!find_opened(give)) return false;
     double first = 0.0;
@@ -158,6 +161,9 @@ bool SurfaceContact::find_many(Compliance& give, bool again) {
     if (round == 0) change_of_look = first;
     if (again && first <= next_look * change_of_look) return true;
     if (first <= settled_pass * row_force_.lpNorm<Eigen::Infinity>()) return true;
+    changes[index(round)] = first;
+    if (rows_.size() <= most_of_one_matrix && too_slow(std::span(changes).first(index(round) + 1)))
+      return false;
   }
   missing_ = fmt::format(
       "no contact forces were found that fit all of {} rows in {} rounds; take a smaller step",

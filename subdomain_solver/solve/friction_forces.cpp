@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "subdomain_solver/solve/friction_row.hpp"
 
@@ -10,9 +11,12 @@ namespace abut {
 namespace {
 
 constexpr int first_sweeps = 15, most_sweeps = 4000;
-constexpr int most_newton = 30;
+/// Of Newton's method; those after which other ways are better, unless they too end.
+constexpr int most_newton = 30, first_newton = 10;
 /// Of the largest force: changes, and residuals, that are rounding; residuals that are an answer.
 constexpr double friction_settled = 1.0e-14, accurate = 1.0e-11;
+/// The same of rows that say the same: gaps are differences of places, and differ by rounding.
+constexpr double rounded_gaps = 1.0e-8;
 /// The same: steps of Newton's method after which the next would be rounding.
 constexpr double friction_converged = 1.0e-9;
 /// Of the largest compliance: what rows that say the same give way by, each for itself.
@@ -89,6 +93,7 @@ class Linearised {
       fill(rows_[r], b_.states[r], b, z, at);
       at += rows_[r].parts;
     }
+    ++b_.solutions;
     b_.factors.compute(b_.matrix);
     b_.factors.solve(b_.rest, b_.step);
     if (!b_.step.allFinite()) return false;
@@ -174,11 +179,11 @@ void hold_all(std::span<const FrictionRow> rows, Vector& z) {
 }
 
 bool newton(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows,
-            double soft, Vector& z, FrictionBuffers& buffers) {
+            double soft, Vector& z, FrictionBuffers& buffers, int most_steps = most_newton) {
   Linearised equations(a, rows, soft, buffers);
   buffers.trial = z;
   const double size = size_of(a, b);
-  for (int k = 0; k < most_newton; ++k) {
+  for (int k = 0; k < most_steps; ++k) {
     buffers.best = buffers.trial;
     if (!equations.step(b, buffers.trial)) return false;
     const double change = (buffers.trial - buffers.best).lpNorm<Eigen::Infinity>();
@@ -194,6 +199,40 @@ bool newton(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionR
       return true;
     }
     if (ended) return false;
+  }
+  return false;
+}
+
+/// Newton's method towards where forces already are (proximal points, Rockafellar 1976): rows give
+/// way, each for itself, by a part of their own compliance about the forces of the turn before
+/// [M.158]. So rows that say the same have one answer. The part falls where a turn does not halve
+/// what is left; where that helps no more, what is left is the rounding of gaps.
+bool by_proximity(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows,
+                  Vector& z, FrictionBuffers& buffers) {
+  constexpr double first = 1.0e-6, most = 0.1, least = 1.0e-10, factor = 10.0;
+  constexpr int most_turns = 20, idle_turns = 3;
+  Vector& here = buffers.path;
+  here = z;
+  double part = first, last = std::numeric_limits<double>::infinity();
+  int idle = 0;
+  for (int turn = 0; turn < most_turns && part <= most; ++turn) {
+    buffers.softened = a;
+    buffers.softened.diagonal() += part * a.diagonal();
+    buffers.shifted = b - part * a.diagonal().cwiseProduct(here);
+    if (!newton(buffers.softened, buffers.shifted, rows, 0.0, here, buffers, first_newton)) {
+      part *= factor;
+      continue;
+    }
+    const double left = friction_residual(a, b, rows, here);
+    if (left > 0.5 * last) {
+      ++idle;
+      part = std::max(least, part / factor);
+    }
+    if (left <= accurate || (idle == idle_turns && left <= rounded_gaps)) {
+      z = here;
+      return true;
+    }
+    last = left;
   }
   return false;
 }
@@ -286,13 +325,14 @@ bool friction_forces(const Eigen::MatrixXd& a, const Vector& b, std::span<const 
   if (b.size() == 0) return true;
   if (sweep(a, b, rows, first_sweeps, force, buffers)) return true;
   if (!force.allFinite()) force.setZero();
-  if (newton(a, b, rows, 0.0, force, buffers)) return true;
+  if (newton(a, b, rows, 0.0, force, buffers, first_newton)) return true;
+  if (by_proximity(a, b, rows, force, buffers)) return true;
   const double soft = friction_softness * a.diagonal().maxCoeff();
   if (newton(a, b, rows, soft, force, buffers)) return true;
   for (const Softened softened : {Softened::all, Softened::tangents})
     if (by_softness(a, b, rows, softened, force, buffers)) return true;
   if (sweep(a, b, rows, most_sweeps, force, buffers)) return true;
-  return force.allFinite() && friction_residual(a, b, rows, force) <= 1.0e-8;
+  return force.allFinite() && friction_residual(a, b, rows, force) <= rounded_gaps;
 }
 
 }  // namespace abut

@@ -17,13 +17,14 @@ struct FrictionRow {
 
 enum class RowState : char { open, sticks, slips };
 
-/// Memory that calls use again; its contents mean nothing between them.
+/// Memory that calls use again; its contents mean nothing between them, but for `solutions`.
 struct FrictionBuffers {
   std::vector<RowState> states;
   std::vector<Eigen::Index> active;
   Eigen::MatrixXd matrix, part, softened;
-  Vector slip, step, rest, trial, best, path;
+  Vector slip, step, rest, trial, best, path, shifted;
   DenseFactors factors{Factoring::lu};
+  std::size_t solutions = 0;  // of linear equations by all calls so far
 };
 
 /// The forces z = (lambda, tau) of rows with Coulomb's friction, w = b + A z:
@@ -31,8 +32,9 @@ struct FrictionBuffers {
 /// with A [m/N] (components) symmetric and positive definite, b [m] gaps and slips without the
 /// forces. Begins with `force`, as far as it fits, and leaves the answer there, in the cone
 /// exactly. Row after row (Gauss and Seidel) until it is known which rows stick, then Newton's
-/// method on Alart and Curnier's equations (1991); where it goes round in circles, by way of rows
-/// that give way less and less, and rows again. False: none came to an end.
+/// method on Alart and Curnier's equations (1991); where it finds no end, as of rows that say the
+/// same, the same about the forces of the turn before [M.158], by way of rows that give way less
+/// and less, and rows again. False: none came to an end.
 [[nodiscard]] bool friction_forces(const Eigen::MatrixXd& a, const Vector& b,
                                    std::span<const FrictionRow> rows, Vector& force,
                                    FrictionBuffers& buffers);

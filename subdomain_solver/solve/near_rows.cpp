@@ -272,6 +272,12 @@ void follow(const double* block, int to, int by, const double* moved, double* ra
 
 }  // namespace
 
+bool too_slow(std::span<const double> changes) {
+  constexpr std::size_t rounds = 8;
+  constexpr double halved = 0.5;
+  return changes.size() > rounds && changes.back() > halved * changes[changes.size() - 1 - rounds];
+}
+
 double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& rates,
              Vector& force) {
   double change = 0.0;

@@ -55,6 +55,10 @@ NearBlocks near_rows(std::span<const FrictionRow> rows, std::span<const PressedS
 void turn(NearBlocks& near, std::span<const FrictionRow> rows, int dim,
           std::span<const double> before, std::span<const double> now, Vector& force);
 
+/// Whether rounds whose first passes changed forces by so much [N], the latest last, would not end:
+/// the last eight did not halve it.
+bool too_slow(std::span<const double> changes);
+
 /// One row after the other to the force [N] that fits its own rates (Gauss and Seidel). `rates`:
 /// [m] (components) gaps and slips under `force`; both follow. Returns the largest change of a
 /// force.

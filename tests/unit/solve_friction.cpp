@@ -227,6 +227,54 @@ TEST(FrictionForces, OfBodiesLighterThanTheyAreStiffAreFound) {
         }
 }
 
+/// Facets of a line whose nodes give way together, as a thin sheet's do, before a wall of more
+/// points than it has nodes: rows of a facet say the same, but for the rounding of their gaps.
+Problem sheet(int facets, int rows_of_facet, double friction, std::mt19937& engine) {
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  const Eigen::Index nodes = facets + 1, count = static_cast<Eigen::Index>(facets) * rows_of_facet;
+  Eigen::MatrixXd bent(2 * nodes, 2 * nodes);
+  for (Eigen::Index i = 0; i < nodes; ++i)
+    for (Eigen::Index j = 0; j < nodes; ++j) {
+      const double far = static_cast<double>(std::abs(i - j));
+      const double same = far == 0.0 ? 1.0 : 0.0;
+      bent.block(2 * i, 2 * j, 2, 2) << 0.05 * same + std::exp(-far / 6.0) * std::cos(far / 9.0),
+          0.02 * same, 0.02 * same, 0.05 * same + 0.1 * std::exp(-far / 6.0);
+    }
+  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(2 * count, 2 * nodes);
+  Problem p;
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const Eigen::Index facet = r / rows_of_facet;
+    const double part = (static_cast<double>(r % rows_of_facet) + 0.3) / rows_of_facet;
+    for (const Eigen::Index k : {0, 1}) {
+      along(2 * r + k, 2 * facet + k) = 1.0 - part;
+      along(2 * r + k, 2 * facet + 2 + k) = part;
+    }
+    p.rows.push_back({2 * r, 2, friction});
+  }
+  Vector free(2 * nodes);
+  for (Eigen::Index k = 0; k < free.size(); ++k) free(k) = k % 2 == 0 ? -1.0 : 0.05 * draw(engine);
+  p.a = along * bent * along.transpose();
+  p.b = along * free;
+  for (Eigen::Index k = 0; k < p.b.size(); ++k) p.b(k) += 1.0e-11 * draw(engine);
+  return p;
+}
+
+/// Newton's method alone, by way of softness and rows one after the other took several hundred
+/// solutions, and 4000 sweeps.
+TEST(FrictionForces, OfRowsThatSayTheSameTakeFewSolutions) {
+  std::mt19937 engine(3);
+  for (const double friction : {0.1, 0.3, 1.0})
+    for (const int rows_of_facet : {3, 5}) {
+      SCOPED_TRACE(fmt::format("{}, {}", friction, rows_of_facet));
+      const Problem p = sheet(20, rows_of_facet, friction, engine);
+      Vector z;
+      FrictionBuffers buffers;
+      ASSERT_TRUE(friction_forces(p.a, p.b, p.rows, z, buffers));
+      EXPECT_LE(friction_residual(p.a, p.b, p.rows, z), 1.0e-8);  // what the function promises them
+      EXPECT_LE(buffers.solutions, 40u);
+    }
+}
+
 TEST(FrictionForces, OfWhatIsNoNumberAreNone) {
   Vector z;
   FrictionBuffers buffers;

@@ -3,7 +3,9 @@
 
 #include "subdomain_solver/solve/near_rows.hpp"
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -229,6 +231,22 @@ TEST(NearRows, ForcesThatRubAreThoseOfTheDenseSolver) {
               10.0 * rounds_left * dense.lpNorm<Eigen::Infinity>())
         << "seed " << seed;
   }
+}
+
+/// Of rounds that leave a tenth none is lost, of rounds that would take three hundred most are.
+TEST(NearRows, RoundsThatWouldNotEndAreTold) {
+  const auto rounds_until_told = [](double factor) {
+    std::vector<double> changes;
+    for (int round = 0; round < 100; ++round) {
+      changes.push_back(std::pow(factor, round));
+      if (too_slow(changes)) return round + 1;
+    }
+    return 0;
+  };
+  EXPECT_EQ(rounds_until_told(0.1), 0);
+  EXPECT_EQ(rounds_until_told(0.9), 0);
+  EXPECT_EQ(rounds_until_told(0.95), 9);
+  EXPECT_EQ(rounds_until_told(1.01), 9);
 }
 
 }  // namespace
