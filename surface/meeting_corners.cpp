@@ -96,12 +96,65 @@ void MeetingCorners::find_verdicts(std::span<const FacetPair> pairs) {
         if (has((*n_.wedges)[two], pair.n)) verdicts_.push_back({.k = one, .n = two});
     }
   keep_one_each(verdicts_, wedges);
-  k_before_.clear(k_.before);
-  n_before_.clear(n_.before);
+  recall_found();
   for (Verdict& verdict : verdicts_) judge(verdict);
   begins_.assign(index(k_.wedges->count()) + 1, 0);
   for (const Verdict& verdict : verdicts_) ++begins_[index(verdict.k) + 1];
   std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+}
+
+/// Of other places nothing is known. Where a substep began is the same for all looks at its end.
+void MeetingCorners::recall_found() {
+  const bool same = k_wedges_ == k_.wedges && n_wedges_ == n_.wedges &&
+                    std::ranges::equal(k_places_, k_.before.points) &&
+                    std::ranges::equal(n_places_, n_.before.points);
+  if (same) {
+    std::ranges::sort(found_, {}, [](const Found& f) { return std::pair(f.k, f.n); });
+    ordered_ = found_.size();
+    return;
+  }
+  k_wedges_ = k_.wedges;
+  n_wedges_ = n_.wedges;
+  k_places_.assign(k_.before.points.begin(), k_.before.points.end());
+  n_places_.assign(n_.before.points.begin(), n_.before.points.end());
+  k_before_.clear(k_.before);
+  n_before_.clear(n_.before);
+  found_.clear();
+  kept_.clear();
+  ordered_ = 0;
+}
+
+/// Those of facets, unless they are known.
+std::size_t MeetingCorners::find_planes(std::int32_t one, std::int32_t two) {
+  const auto known = std::span(found_).first(ordered_);
+  const auto at = std::ranges::lower_bound(known, std::pair(one, two), {},
+                                           [](const Found& f) { return std::pair(f.k, f.n); });
+  if (at != known.end() && at->k == one && at->n == two) return index(at - known.begin());
+  ++searches_;
+  look_at_facets((*k_.wedges)[one], (*n_.wedges)[two]);
+  found_.push_back({.k = one, .n = two, .size = size_, .of_facets = most_});
+  return found_.size() - 1;
+}
+
+/// All of them, to planes_.
+void MeetingCorners::find_all_planes(const Verdict& verdict) {
+  Found& found = found_[verdict.found];
+  if (!found.whole) {
+    const Wedge &a = (*k_.wedges)[verdict.k], &b = (*n_.wedges)[verdict.n];
+    look_at_facets(a, b);
+    for (const Ends& one : a.edges)
+      for (const Ends& two : b.edges) look_across(one, two);
+    found.whole = true;
+    found.most = most_;
+    found.first = kept_.size();
+    found.count = planes_.size();
+    kept_.insert(kept_.end(), planes_.begin(), planes_.end());
+    return;
+  }
+  const auto planes = std::span(kept_).subspan(found.first, found.count);
+  planes_.assign(planes.begin(), planes.end());
+  most_ = found.most;
+  size_ = found.size;
 }
 
 std::span<MeetingCorners::Verdict> MeetingCorners::verdicts_of(std::int32_t k) {
@@ -229,18 +282,17 @@ const MeetingCorners::Plane* MeetingCorners::joining(const Plane& best, const We
 /// Where a facet's plane parts them by more than is near, no row holds them; all else is asked of
 /// few of them (is_dropped), and is dear.
 void MeetingCorners::judge(Verdict& verdict) {
-  look_at_facets((*k_.wedges)[verdict.k], (*n_.wedges)[verdict.n]);
-  const double far = reach() + 2.0 * corner_rounding * size_;
-  verdict.told = most_ > far;
+  verdict.found = find_planes(verdict.k, verdict.n);
+  const Found& found = found_[verdict.found];
+  size_ = found.size;
+  verdict.told = found.of_facets > reach() + 2.0 * corner_rounding * size_;
   if (!verdict.told) judge_whole(verdict);
 }
 
 void MeetingCorners::judge_whole(Verdict& verdict) {
   const Wedge &a = (*k_.wedges)[verdict.k], &b = (*n_.wedges)[verdict.n];
   verdict.whole = true;
-  look_at_facets(a, b);
-  for (const Ends& one : a.edges)
-    for (const Ends& two : b.edges) look_across(one, two);
+  find_all_planes(verdict);
   const Plane& best = *std::ranges::max_element(planes_, [this](const Plane& p, const Plane& q) {
     return p.apart + corner_rounding * size_ < q.apart;
   });

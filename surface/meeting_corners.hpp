@@ -42,6 +42,9 @@ class MeetingCorners {
   int count() const { return static_cast<int>(rows_.size()); }
   /// Appends the rows, in the place of those of their nodes.
   void join(SurfaceRows& rows);
+  /// Pairs of wedges for which planes were looked for so far: for each one once as long as the two
+  /// surfaces were at the same places before.
+  std::size_t searches() const { return searches_; }
 
  private:
   enum class Kind { n_plane, k_plane, edges };
@@ -60,7 +63,16 @@ class MeetingCorners {
     bool joined = false;        // facets of both lie along it
     bool crosses = false;       // edge across edge, near
     bool whole = false;         // what joins them, and along what, has been looked for
+    std::size_t found = 0;      // of found_
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  };
+  struct Found {  // planes between two wedges, of the places before alone
+    std::int32_t k = 0, n = 0;
+    double size = 0.0;                 // [m] size_
+    double of_facets = 0.0;            // [m] by which a facet's plane separates them at most
+    bool whole = false;                // edges have been looked at, too
+    double most = 0.0;                 // [m] most_ then
+    std::size_t first = 0, count = 0;  // planes_, of kept_
   };
   struct Side {  // of a row: nodes and their shares
     int count = 0;
@@ -78,6 +90,9 @@ class MeetingCorners {
   /// [m] What is farther apart has no row yet.
   double reach() const;
   void find_verdicts(std::span<const FacetPair> pairs);
+  void recall_found();
+  std::size_t find_planes(std::int32_t one, std::int32_t two);
+  void find_all_planes(const Verdict& verdict);
   void judge(Verdict& verdict);
   void judge_whole(Verdict& verdict);
   /// Of a wedge of K's, ordered by those of N's.
@@ -127,6 +142,14 @@ class MeetingCorners {
   std::vector<Plane> planes_;
   double most_ = 0.0;       // [m] by which one of them separates
   Eigen::Vector3d shared_;  // normals of planes that separate nearly as well as the best
+  // What was found of places before, which several looks have in common: that of looks before this
+  // one ordered by wedges, this one's behind.
+  std::vector<Found> found_;
+  std::size_t ordered_ = 0;
+  std::vector<Plane> kept_;
+  std::vector<double> k_places_, n_places_;  // [m] that it is of
+  const Wedges *k_wedges_ = nullptr, *n_wedges_ = nullptr;
+  std::size_t searches_ = 0;
   std::vector<Verdict> verdicts_;
   std::vector<std::size_t> begins_;  // of the verdicts of each wedge of K's, and their end
   bool crosses_ = false;             // one of them does

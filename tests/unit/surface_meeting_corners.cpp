@@ -110,5 +110,42 @@ TEST(MeetingCorners, HoldACornerBeforeAFaceThatEndsInOne) {
   }
 }
 
+/// The looks at one substep's end have its begin in common: planes of it are looked for once, and
+/// rows are to the last bit those that a look by itself finds.
+TEST(MeetingCorners, LookForPlanesOfOnePlaceOnce) {
+  const Eigen::Matrix3d turn = about(60.0, {0, 0, 1}) * about(180.0, {1, 0, 0});
+  const SurfaceMesh k = roof(), before = moved(roof(), turn, {0.5, 0.0, 0.03});
+  const Wedges of_k(k.pose()), of_n(before.pose());
+  std::vector<FacetPair> pairs;
+  for (std::int32_t a = 0; a < 2; ++a)
+    for (std::int32_t b = 0; b < 2; ++b) pairs.push_back({a, b});
+  const auto look = [&](MeetingCorners& corners, double now, double from) {
+    const SurfaceMesh n = moved(roof(), turn, {0.5, 0.0, now}),
+                      began = moved(roof(), turn, {0.5, 0.0, from});
+    SurfaceRows rows;
+    rows.clear();
+    rows.dim = 3;
+    corners.find({k.pose(), k.pose(), &of_k}, {n.pose(), began.pose(), &of_n}, pairs, {0.4, 0.05});
+    corners.join(rows);
+    EXPECT_EQ(rows.count(), 1);
+    std::vector<double> told = rows.gaps;
+    told.insert(told.end(), rows.normals.begin(), rows.normals.end());
+    told.insert(told.end(), rows.n.values.begin(), rows.n.values.end());
+    return told;
+  };
+  MeetingCorners several;
+  look(several, 0.02, 0.03);
+  const std::size_t searches = several.searches();
+  EXPECT_GT(searches, 0u);
+  for (const double now : {0.01, -0.01, 0.0}) {
+    MeetingCorners alone;
+    EXPECT_EQ(look(several, now, 0.03), look(alone, now, 0.03)) << now;
+    EXPECT_EQ(several.searches(), searches) << now;
+  }
+  MeetingCorners alone;
+  EXPECT_EQ(look(several, 0.02, 0.01), look(alone, 0.02, 0.01));  // of another place
+  EXPECT_EQ(several.searches(), 2 * searches);
+}
+
 }  // namespace
 }  // namespace abut::surface_meeting_corners_tests
