@@ -250,6 +250,7 @@ bool CommonStep::prepare_rows() {
     if (const auto owed = unclaimed_.extract(row.first_point(0))) row.owed = owed.mapped();
     grown = points_.add(row) || grown;
   }
+  if (grown) points_.number();
   claim_of_others();
   return grown;
 }

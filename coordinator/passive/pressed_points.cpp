@@ -10,27 +10,33 @@ void PressedPoints::clear() {
   slots_.assign(surfaces_.count(), -1);
 }
 
-/// Points of the skin lie port by port, in the order of points: sorted as they are, so are the
-/// values of a body whose ports were numbered in their order.
 bool PressedPoints::add(const DistanceRow& row) {
+  constexpr int not_numbered = 0;
   if (slots_.size() != surfaces_.count()) slots_.assign(surfaces_.count(), -1);
   bool grown = false;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::int32_t point = row.features.points[i];
     if (!row.counts(i) || surfaces_.stands(point) || slots_[point] >= 0) continue;
-    Body& body = bodies_[index(owner(point))];
-    const auto before = [this](std::int32_t a, std::int32_t b) {
-      const TouchingSurfaces::Point &one = surfaces_[a], &other = surfaces_[b];
-      return std::tuple(one.body, one.port, one.point) <
-             std::tuple(other.body, other.port, other.point);
-    };
-    body.slots.insert(std::ranges::upper_bound(body.slots, point, before), point);
-    const int dim = surfaces_.skin().dim;
-    for (std::size_t k = 0; k < body.slots.size(); ++k)
-      slots_[body.slots[k]] = static_cast<int>(k) * dim;
+    bodies_[index(owner(point))].slots.push_back(point);
+    slots_[point] = not_numbered;
     grown = true;
   }
   return grown;
+}
+
+/// Points of the skin lie port by port, in the order of points: sorted as they are, so are the
+/// values of a body whose ports were numbered in their order.
+void PressedPoints::number() {
+  const auto place = [this](std::int32_t point) {
+    const TouchingSurfaces::Point& at = surfaces_[point];
+    return std::tuple(at.body, at.port, at.point);
+  };
+  const int dim = surfaces_.skin().dim;
+  for (Body& body : bodies_) {
+    std::ranges::sort(body.slots, {}, place);
+    for (std::size_t k = 0; k < body.slots.size(); ++k)
+      slots_[body.slots[k]] = static_cast<int>(k) * dim;
+  }
 }
 
 std::vector<std::vector<std::int32_t>> PressedPoints::list(int body, std::size_t ports) const {

@@ -24,8 +24,11 @@ class PressedPoints {
   int owner(std::int32_t point) const { return owners_[index(surfaces_[point].body)]; }
 
   void clear();
-  /// Takes the points of a row; true: some are new, and the bodies have not told of them.
+  /// Takes the points of a row; true: some are new, and the bodies have not told of them: number()
+  /// is to be called once after all rows.
   bool add(const DistanceRow& row);
+  /// The places of all points among the values of their bodies: of n points by n log n comparisons.
+  void number();
   /// Whether anything is pressed on an owner that could move it.
   bool any(int owner) const { return !bodies_[index(owner)].slots.empty(); }
   /// The points of a body's ports, for PassiveStep::pressed.
