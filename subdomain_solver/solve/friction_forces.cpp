@@ -24,8 +24,8 @@ constexpr double friction_softness = 1.0e-11;
 /// Of the cone's radius: forces nearer to it than this are on it.
 constexpr double on_cone = 1.0e-9;
 
-using Tangent = OneRow::Tangent;
-using PlaneSquare = OneRow::PlaneSquare;
+using Tangent = OneRow<>::Tangent;
+using PlaneSquare = OneRow<>::PlaneSquare;
 
 double radius(const FrictionRow& row, double normal) {
   return normal > 0.0 ? row.friction * normal : 0.0;
@@ -56,7 +56,7 @@ bool sweep(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRo
       const Vector old = z.segment(row.first, parts);
       const Vector rate =
           w.segment(row.first, parts) - a.block(row.first, row.first, parts, parts) * old;
-      OneRow(a.block(row.first, row.first, parts, parts), row)
+      OneRow<>(a.block(row.first, row.first, parts, parts), row)
           .solve(rate(0), rate.tail(parts - 1), z.segment(row.first, parts));
       const Vector moved = z.segment(row.first, parts) - old;
       if (moved.isZero(0.0)) continue;

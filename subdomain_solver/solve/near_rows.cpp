@@ -270,34 +270,42 @@ void follow(const double* block, int to, int by, const double* moved, double* ra
   }
 }
 
-}  // namespace
-
-bool too_slow(std::span<const double> changes) {
-  constexpr std::size_t rounds = 8;
-  constexpr double halved = 0.5;
-  return changes.size() > rounds && changes.back() > halved * changes[changes.size() - 1 - rounds];
+/// The change [N] of the forces of a row that rubs, to those that fit its rates.
+template <int Tangents>
+void rub(const double* own, const FrictionRow& row, const Vector& rates, Vector& force,
+         double* moved) {
+  constexpr int parts = Tangents + 1;
+  const Eigen::Map<const Eigen::Matrix<double, parts, parts>> block(own);
+  const Eigen::Matrix<double, parts, 1> old = force.segment<parts>(row.first);
+  Eigen::Matrix<double, parts, 1> rate;
+  for (int i = 0; i < parts; ++i) {
+    double sum = block(i, 0) * old(0);
+    for (int j = 1; j < parts; ++j) sum += block(i, j) * old(j);
+    rate(i) = rates(row.first + i) - sum;
+  }
+  OneRow<Tangents>(block, row)
+      .solve(rate(0), rate.template tail<Tangents>(), force.segment<parts>(row.first));
+  for (int p = 0; p < parts; ++p) moved[p] = force(row.first + p) - old(p);
 }
+
+}  // namespace
 
 double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& rates,
              Vector& force) {
   double change = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const FrictionRow& row = rows[r];
-    const Eigen::Index parts = row.parts;
     const double* own = near.blocks.data() + near.begins[near.own[r]];
     double moved[3] = {};
-    if (parts == 1) {
+    if (row.parts == 1) {
       const double old = force(row.first);
       const double now = std::max(0.0, old - rates(row.first) / own[0]);
       moved[0] = now - old;
       force(row.first) = now;
+    } else if (row.parts == 2) {
+      rub<1>(own, row, rates, force, moved);
     } else {
-      const Eigen::Map<const Eigen::MatrixXd> block(own, parts, parts);
-      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> old = force.segment(row.first, parts);
-      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> rate =
-          rates.segment(row.first, parts) - block * old;
-      OneRow(block, row).solve(rate(0), rate.tail(parts - 1), force.segment(row.first, parts));
-      for (Eigen::Index p = 0; p < parts; ++p) moved[p] = force(row.first + p) - old(p);
+      rub<2>(own, row, rates, force, moved);
     }
     const double most = largest_entry(moved, row.parts);
     if (most == 0.0) continue;
@@ -308,6 +316,12 @@ double relax(const NearBlocks& near, std::span<const FrictionRow> rows, Vector& 
     }
   }
   return change;
+}
+
+bool too_slow(std::span<const double> changes) {
+  constexpr std::size_t rounds = 8;
+  constexpr double halved = 0.5;
+  return changes.size() > rounds && changes.back() > halved * changes[changes.size() - 1 - rounds];
 }
 
 }  // namespace abut

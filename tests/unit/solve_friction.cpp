@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "subdomain_solver/solve/friction_row.hpp"
 #include "subdomain_solver/solve/unilateral_forces.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -273,6 +274,30 @@ TEST(FrictionForces, OfRowsThatSayTheSameTakeFewSolutions) {
       EXPECT_LE(friction_residual(p.a, p.b, p.rows, z), 1.0e-8);  // what the function promises them
       EXPECT_LE(buffers.solutions, 40u);
     }
+}
+
+template <int Tangents>
+void expect_same_bits(std::mt19937& engine) {
+  constexpr int parts = Tangents + 1;
+  std::uniform_real_distribution<double> drawn_rate(-1.0, 0.2);
+  for (int draw = 0; draw < 100; ++draw) {
+    const Problem p = drawn(1, parts, 0.3 * (1 + draw % 3), 1.0, engine);
+    Vector slip(Tangents), z = Vector::Zero(parts);
+    for (double& value : slip) value = drawn_rate(engine);
+    z(0) = draw % 2;
+    const double gap = drawn_rate(engine);
+    Eigen::Matrix<double, parts, 1> fixed = z;
+    const Eigen::Matrix<double, parts, parts> block = p.a;
+    OneRow<>(p.a, p.rows[0]).solve(gap, slip, z);
+    OneRow<Tangents>(block, p.rows[0]).solve(gap, slip, fixed);
+    EXPECT_EQ(Vector(fixed), z) << draw;
+  }
+}
+
+TEST(FrictionForces, OfOneRowHaveTheSameBitsHoweverItsSizeIsTold) {
+  std::mt19937 engine(17);
+  expect_same_bits<1>(engine);
+  expect_same_bits<2>(engine);
 }
 
 TEST(FrictionForces, OfWhatIsNoNumberAreNone) {
