@@ -125,11 +125,14 @@ bool CommonStep::gives_back(const DistanceRow& row) const {
   });
 }
 
+/// What sticks moves by what its bodies' answers leave open, and its force may do work then: no
+/// friction does, so normal contact has to have lost it, as what it pushes out.
 void CommonStep::count_friction(const DistanceRow& row, PassiveLedger& ledger) const {
   double heat = 0.0;
   for (const std::size_t t : {0u, 1u})
     heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, static_cast<int>(t) + 1);
-  if (heat == 0.0) return;
+  if (heat < 0.0) ledger.push_out -= heat;
+  if (!(heat > 0.0)) return;
   ledger.friction += heat;
   const TouchingSurfaces::Point& one = surfaces_[row.first_point(0)];
   const TouchingSurfaces::Point& other = surfaces_[row.first_point(1)];
