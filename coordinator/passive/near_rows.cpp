@@ -116,10 +116,12 @@ double NearRows::least(double distance) const {
 }
 
 /// A corner that slides along a side past the end of that side comes as near to the facet behind
-/// the end as it is to the side. What is behind a surface, or on it, is kept there by its own row.
+/// the end as it is to the side. What is behind a surface, or on it, is kept there by its own row,
+/// but for edges with an end behind that pass outside of a rim.
 bool NearRows::passes_beside(const FeaturePair& pair, const Places& from, const Places& to,
                              double part) {
   const int dim = surfaces_.skin().dim;
+  if (pair.kind == FeatureKind::edge_edge && behind_.holds(pair)) return false;
   const FeaturePoints x = at(pair, from, to, part);
   const FeatureDistance found = feature_distance(pair.kind, dim, x);
   if (!(found.distance > 0.0)) return false;
