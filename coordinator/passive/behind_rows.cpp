@@ -107,14 +107,10 @@ void BehindRows::let_beside(const FeaturePair& pair) {
 bool BehindRows::leaves_out(const SkinTrees& trees, const FeaturePair& pair,
                             const Places& places) const {
   if (behind_.empty()) return false;
+  if (pair.kind == FeatureKind::edge_edge)
+    return holds(pair) && !passes_outside(trees, pair, places);
   const auto& p = pair.points;
-  const std::vector<std::int32_t>& group = surfaces_.skin().group;
-  if (pair.kind == FeatureKind::edge_edge) {
-    const bool behind = leaves_out({p[0], p[1]}, group[index(p[2])]) ||
-                        leaves_out({p[2], p[3]}, group[index(p[0])]);
-    return behind && !passes_outside(trees, pair, places);
-  }
-  const Behind* what = known({p[0], -1}, group[index(p[1])]);
+  const Behind* what = known({p[0], -1}, surfaces_.skin().group[index(p[1])]);
   if (what == nullptr) return false;
   const FeaturePoints x = abut::places(pair, places);
   const Eigen::Vector3d normal = facet_normal(surfaces_.skin().dim, x);
