@@ -24,6 +24,7 @@
 #include "coordinator/coupling/surface_watch.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "coordinator/surface_start.hpp"
+#include "coordinator/surfaces_alone.hpp"
 #include "coordinator/tied_outside.hpp"
 #include "coordinator/tied_surfaces.hpp"
 #include "coordinator/touching_pairs.hpp"
@@ -314,10 +315,6 @@ void set_robin(const InterfaceSpec& spec, const RobinTransmission& how, const Sc
   joint.exchange = std::make_unique<Robin>(rule, how.number, schwarz.parallel);
 }
 
-}  // namespace
-
-namespace {
-
 void see_starts(const Scene& scene, Joint& joint) {
   for (const int s : {0, 1})
     if (scene.bodies[joint.sides[index(s)].body].second.adjusts) joint.role.adjusted = s;
@@ -345,7 +342,8 @@ bool step_apart(const Scene& scene, const std::array<Side, 2>& sides, const Bodi
 
 }  // namespace
 
-std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies) {
+std::vector<Joint> make_joints(const Scene& scene, Bodies& bodies) {
+  turn_surfaces_alone(scene, bodies);
   std::vector<Joint> joints;
   std::vector<std::array<Side, 2>> pairs;
   for (const auto& [name, spec] : scene.interfaces) {

@@ -9,8 +9,9 @@
 namespace abut {
 
 /// The joints of a run: what the scene says of its interfaces, joined to the bodies. Throws
-/// InputError for ports that do not face each other or bodies that cannot take their roles.
-std::vector<Joint> make_joints(const Scene& scene, const Bodies& bodies);
+/// InputError for ports that do not face each other or bodies that cannot take their roles. Bodies
+/// that are surfaces alone look to who may touch them from then on.
+std::vector<Joint> make_joints(const Scene& scene, Bodies& bodies);
 
 /// The joint of two surfaces of a scene where everything may touch everything. Throws InputError
 /// for bodies of which neither can find their contact.

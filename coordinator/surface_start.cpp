@@ -103,7 +103,7 @@ std::string remedy(double depth, const NamedSurface& one, const NamedSurface& ot
   if (depth <= deepest_fit(one, other))
     text += ", or, where a fit is meant, initial: {interference: {over: TIME}}";
   for (const NamedSurface* side : {&one, &other})
-    if (side->immovable && !is_closed(outside(*side)))
+    if (side->unturned && !is_closed(outside(*side)))
       text += fmt::format(", or, where {} is a surface alone, turn its facets round: it looks {}",
                           side->name,
                           side->geometry.dim == 2
@@ -175,7 +175,7 @@ void check_each(const NamedSurface& one, const NamedSurface& other, const std::s
 
 NamedSurface named_surface(const std::string& name, const Description& body, int port) {
   NamedSurface named{name, body.ports[index(port)].geometry};
-  named.immovable = !std::isfinite(body.mass);
+  named.unturned = !std::isfinite(body.mass) && body.fields.empty();
   for (const Port& other : body.ports)
     if (&other.geometry != &named.geometry && other.geometry.dim == named.geometry.dim)
       named.beside.push_back(&other.geometry);

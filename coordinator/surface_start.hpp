@@ -14,7 +14,8 @@ struct NamedSurface {
   // of its body's other ports: what is behind the outer surface of a ring may be in its hole
   std::vector<const PortGeometry*> beside = {};
   const PortGeometry* outside = nullptr;  // closed, that it is a part of; null: not known
-  bool immovable = false;                 // its body is: a tool may be a surface alone
+  // Its body does not move and shows no cells: it may be a surface alone, and nobody has turned it.
+  bool unturned = false;
 };
 
 NamedSurface named_surface(const std::string& name, const Description& body, int port);

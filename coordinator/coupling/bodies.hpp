@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,7 +35,12 @@ class Bodies {
 
   int count() const { return static_cast<int>(subdomains_.size()); }
   Subdomain& operator[](int body) { return *subdomains_[body]; }
-  const Description& describe(int body) const { return subdomains_[body]->describe(); }
+  const Description& describe(int body) const {
+    const auto told = told_.find(body);
+    return told == told_.end() ? subdomains_[body]->describe() : told->second;
+  }
+  /// From now on describe() tells this of a body: its facets look to the other side.
+  void tell_of(int body, Description told) { told_.insert_or_assign(body, std::move(told)); }
   const Port& port(const Side& side) const { return describe(side.body).ports[side.port]; }
   Advance& request(int body) { return requests_[body]; }
   const Advance& request(int body) const { return requests_[body]; }
@@ -137,6 +143,7 @@ class Bodies {
   PortKernel ask(int body, double step, Probing probing);
 
   std::vector<Subdomain*> subdomains_;
+  std::map<int, Description> told_;  // of what describes itself otherwise
   double window_;  // [s]
   std::vector<Advance> requests_;
   std::vector<Response> responses_;

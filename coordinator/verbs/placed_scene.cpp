@@ -50,7 +50,7 @@ void validate_expectations(const Scene& scene, const std::vector<const Descripti
 std::vector<Estimate::Ties> validate_coupling(const Scene& scene, const Placement& placement,
                                               const Document& document) {
   try {
-    const Bodies bodies(placement.pointers(), scene.time.window);
+    Bodies bodies(placement.pointers(), scene.time.window);
     std::vector<Joint> joints = make_joints(scene, bodies);
     make_broad_phase(scene, joints, bodies);
     return estimate_ties(scene, joints, bodies);

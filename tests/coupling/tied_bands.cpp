@@ -74,7 +74,7 @@ struct Slabs {
     const std::vector<std::unique_ptr<Subdomain>> here = launch_local(scene, text);
     std::vector<Subdomain*> pointers;
     for (const std::unique_ptr<Subdomain>& body : here) pointers.push_back(body.get());
-    const Bodies bodies(pointers, scene.time.window);
+    Bodies bodies(pointers, scene.time.window);
     std::vector<Joint> joints = make_joints(scene, bodies);
     return estimate_ties(scene, joints, bodies).at(0);
   }
