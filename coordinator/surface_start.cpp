@@ -188,7 +188,7 @@ double overlap_of(const NamedSurface& one, const NamedSurface& other) {
   const StartSurface k = start(one.geometry), n = start(other.geometry);
   double depth = places.empty() ? 0.0 : places.front().depth;
   for (const auto& [own, its] : {std::pair(&k, &n), std::pair(&n, &k)}) {
-    if (has_edges(its->surface) && !has_edges(own->surface)) continue;  // rows are of the other's
+    if (rows_of_other(*own, *its)) continue;
     const SurfaceRows rows = average_rows(*own, *its);
     const int row = deepest(rows, tolerance * facet_size(k, n));
     if (row >= 0) depth = std::max(depth, -rows.gaps[row]);
@@ -204,7 +204,7 @@ void check_surfaces(const NamedSurface& finder, const NamedSurface& other, bool 
                     bool meant, const std::string& where) {
   check_each(finder, other, where);
   check_apart(finder, other, meant, where);
-  const bool turned = has_edges(posed(other.geometry)) && !has_edges(posed(finder.geometry));
+  const bool turned = rows_of_other(start(finder.geometry), start(other.geometry));
   if (turned) check_division(finder, other, where);
   if (averages) check_averages(turned ? other : finder, turned ? finder : other, where);
 }

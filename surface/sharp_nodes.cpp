@@ -33,9 +33,16 @@ std::vector<HalfEdge> sorted_edges(const PosedSurface& surface) {
   return edges;
 }
 
+std::vector<std::int32_t> ends_of(const std::vector<SharpEdge>& edges) {
+  std::vector<std::int32_t> nodes;
+  for (const SharpEdge& edge : edges) nodes.insert(nodes.end(), edge.ends.begin(), edge.ends.end());
+  keep_one_each(nodes);
+  return nodes;
+}
+
 }  // namespace
 
-std::vector<SharpEdge> sharp_edges(const PosedSurface& surface, double angle) {
+std::vector<SharpEdge> sharp_edges(const PosedSurface& surface, double angle, double length) {
   const std::vector<HalfEdge> edges = sorted_edges(surface);
   const double limit = std::cos(angle);
   std::vector<SharpEdge> sharp;
@@ -43,20 +50,21 @@ std::vector<SharpEdge> sharp_edges(const PosedSurface& surface, double angle) {
     if (!edges[i].same_edge(edges[i - 1])) continue;
     const Corners one = corners(surface, edges[i - 1].facet);
     const Corners other = corners(surface, edges[i].facet);
-    const Eigen::Vector3d n = mean_normal(one);
-    const bool convex = n.dot(centre(other) - centre(one)) < 0.0;
-    if (convex && n.dot(mean_normal(other)) < limit)
+    const Eigen::Vector3d n = mean_normal(one), m = mean_normal(other);
+    const Eigen::Vector3d way = centre(other) - centre(one);
+    const double turn = std::atan2(n.cross(m).norm(), n.dot(m));
+    if (n.dot(way) < 0.0 && (n.dot(m) < limit || turn * length > angle * way.norm()))
       sharp.push_back({{edges[i].a, edges[i].b}, {edges[i - 1].facet, edges[i].facet}});
   }
   return sharp;
 }
 
 std::vector<std::int32_t> sharp_nodes(const PosedSurface& surface, double angle) {
-  std::vector<std::int32_t> nodes;
-  for (const SharpEdge& edge : sharp_edges(surface, angle))
-    nodes.insert(nodes.end(), edge.ends.begin(), edge.ends.end());
-  keep_one_each(nodes);
-  return nodes;
+  return ends_of(sharp_edges(surface, angle));
+}
+
+std::vector<std::int32_t> edge_nodes(const PosedSurface& surface, double size) {
+  return ends_of(sharp_edges(surface, sharp_edge, 2.0 * size));
 }
 
 }  // namespace abut

@@ -83,4 +83,9 @@ SurfaceRows average_rows(const StartSurface& one, const StartSurface& other) {
 
 bool has_edges(const PosedSurface& surface) { return !sharp_nodes(surface, sharp_edge).empty(); }
 
+bool rows_of_other(const StartSurface& finder, const StartSurface& other) {
+  return !edge_nodes(other.surface, finder.spacing).empty() &&
+         edge_nodes(finder.surface, other.spacing).empty();
+}
+
 }  // namespace abut

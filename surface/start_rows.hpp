@@ -34,8 +34,12 @@ SurfaceRows node_rows(const StartSurface& one, const StartSurface& other);
 /// that stand for round bodies overlap in them before any node does.
 SurfaceRows average_rows(const StartSurface& one, const StartSurface& other);
 
-/// Whether a surface has edges that are sharp to contact. Where one of two has, rows are of its
-/// nodes [M.93], and averages of the other's mean nothing.
+/// Whether a surface has edges that are sharp to contact.
 bool has_edges(const PosedSurface& surface);
+
+/// Whether rows of a contact are of the other surface's nodes where its edges are near: it has some
+/// that the finder's facets see (edge_nodes), and the other way round none [M.93]. Averages of the
+/// finder's nodes mean nothing there.
+bool rows_of_other(const StartSurface& finder, const StartSurface& other);
 
 }  // namespace abut

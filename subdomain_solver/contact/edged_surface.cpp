@@ -10,12 +10,12 @@
 
 namespace abut {
 
-EdgedSurface::EdgedSurface(const PortGeometry& surface, double size) {
+EdgedSurface::EdgedSurface(const PortGeometry& surface, double size, double seen_by) {
   const PosedSurface whole = posed(surface);
-  if (sharp_nodes(whole, sharp_edge).empty()) return;
+  if (edge_nodes(whole, seen_by).empty()) return;
   divided_ = divided(whole, parts_for(whole, size));
   const PosedSurface parts = pose_of(surface.points);
-  sharp_ = sharp_nodes(parts, sharp_edge);
+  sharp_ = edge_nodes(parts, seen_by);
   longest_ = longest_edge(parts);
   parts_ = parts.facet_count() / whole.facet_count();
   build(tree_, parts, 0.0);

@@ -12,13 +12,16 @@
 
 namespace abut {
 
-/// A surface whose nodes may have the rows of a contact, because it has sharp edges: averaged over
-/// facets around an edge, rows of the other side's nodes would let it through [M.93]. Its facets
-/// are divided to about the size of the other's.
+/// A surface whose nodes may have the rows of a contact, because it has sharp edges, or turns so
+/// much over a facet of the other side that this one sees an edge: averaged over facets around an
+/// edge, rows of the other side's nodes would let it through, and press before a round one touches
+/// [M.93]. Its facets are divided to about the size of the other's.
 class EdgedSurface {
  public:
-  EdgedSurface(const PortGeometry& surface, double size);
-  /// It has sharp edges.
+  /// `size` [m] of facets that it is divided to; `seen_by` [m]: facets that meet it, 0: edges alone
+  /// count.
+  EdgedSurface(const PortGeometry& surface, double size, double seen_by);
+  /// It has sharp edges, or turns like them.
   bool any() const { return !sharp_.empty(); }
 
   /// Whether an edge lies over another surface, no farther from it than `reach` [m]; `tree` holds

@@ -22,8 +22,8 @@ SurfaceObstacle::SurfaceObstacle(std::size_t port, std::size_t partner, const Po
       met_(&met),
       body_(std::move(body)),
       reach_(longest_edge(posed(own, own.points))),
-      edges_(met.surface, own.spacing),
-      own_edges_(own, reach_),
+      edges_(met.surface, own.spacing, own.spacing),
+      own_edges_(own, reach_, met.surface.spacing),
       wedges_(posed(met.surface)),
       own_wedges_(posed(own)),
       near_(met.surface, own) {

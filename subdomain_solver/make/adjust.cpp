@@ -163,11 +163,12 @@ void Adjuster::meet(const std::string& port, const std::string& side) {
     for (const auto& [its, port_spec] : partner->ports)
       if (its == contact.port) m.partner = surface_of(*partner->shape(), *mesh, port_spec.side);
     if (!is_sound(m.own) || !is_sound(m.partner)) continue;
-    // The body that is adjusted finds the contact where it can and the scene does not fix it; with
-    // edges on one side alone rows are of that side's nodes [M.93].
-    const bool edges = has_edges(posed(m.own)), its_edges = has_edges(posed(m.partner));
+    // The body that is adjusted finds the contact where it can and the scene does not fix it.
     m.points = contact.points;
-    m.own_rows = m.points || edges == its_edges ? finds(spec_) && !contact.finds : edges;
+    const bool finder = finds(spec_) && !contact.finds;
+    const StartSurface own = m.one(), its = m.other();
+    const bool turned = finder ? rows_of_other(own, its) : rows_of_other(its, own);
+    m.own_rows = finder != (turned && !m.points);
     meetings_.push_back(std::move(m));
   }
 }

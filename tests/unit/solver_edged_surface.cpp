@@ -25,7 +25,7 @@ TEST(EdgedSurface, RowsNameNodesOfTheFinder) {
   partner.points = corner.points;
   partner.facets = corner.facets;
   partner.offsets = corner.offsets;
-  EdgedSurface edged(partner, 1.0);
+  EdgedSurface edged(partner, 1.0, 0.0);
   ASSERT_TRUE(edged.any());
   BoxTree tree;
   build(tree, face.pose(), 1.0);
