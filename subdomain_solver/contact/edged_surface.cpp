@@ -1,21 +1,36 @@
 #include "subdomain_solver/contact/edged_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 #include "surface/closest_point.hpp"
 #include "surface/sharp_nodes.hpp"
 
 namespace abut {
+
+namespace {
+
+/// Of the angle that a facet may have with what it lies along: half of a sharp edge's.
+const double along = std::cos(0.5 * sharp_edge);
+
+}  // namespace
 
 EdgedSurface::EdgedSurface(const PortGeometry& surface, double size, double seen_by) {
   const PosedSurface whole = posed(surface);
   if (edge_nodes(whole, seen_by).empty()) return;
   divided_ = divided(whole, parts_for(whole, size));
   const PosedSurface parts = pose_of(surface.points);
-  sharp_ = edge_nodes(parts, seen_by);
+  for (const SharpEdge& edge : sharp_edges(parts, sharp_edge))
+    for (const std::int32_t end : edge.ends)
+      for (const std::int32_t facet : edge.facets) sharp_.emplace_back(end, facet);
+  keep_one_each(sharp_);
+  std::ranges::set_difference(edge_nodes(parts, seen_by), sharp_nodes(parts, sharp_edge),
+                              std::back_inserter(bent_));
   longest_ = longest_edge(parts);
   parts_ = parts.facet_count() / whole.facet_count();
   build(tree_, parts, 0.0);
@@ -28,16 +43,33 @@ PosedSurface EdgedSurface::pose_of(std::span<const double> pose) {
   return posed(divided_, points_);
 }
 
-bool EdgedSurface::is_near(std::span<const double> pose, const PosedSurface& other,
-                           const BoxTree& tree, double reach) {
-  if (sharp_.empty()) return false;
+EdgesNear EdgedSurface::near(std::span<const double> pose, const PosedSurface& other,
+                             const BoxTree& tree, double reach) {
+  EdgesNear found;
+  if (!any()) return found;
   const PosedSurface parts = pose_of(pose);
   ClosestSearch search;
   search.reach = reach;
-  return std::ranges::any_of(sharp_, [&](std::int32_t node) {
-    const std::optional<SurfacePoint> foot = closest_point(other, tree, parts.point(node), search);
-    return foot && foot->at.feature == FacetFeature::inside;
-  });
+  const auto foot_of = [&](std::int32_t node) {
+    const auto foot = closest_point(other, tree, parts.point(node), search);
+    return foot && foot->at.feature == FacetFeature::inside ? foot : std::nullopt;
+  };
+  for (const std::int32_t node : bent_)
+    if (const auto foot = foot_of(node)) found.bent = std::min(found.bent, foot->at.distance);
+  for (auto at = sharp_.begin(); at != sharp_.end();) {
+    const std::int32_t node = at->first;
+    const auto next = std::find_if(at, sharp_.end(), [node](auto s) { return s.first != node; });
+    if (const auto foot = foot_of(node)) {
+      found.sharp = std::min(found.sharp, foot->at.distance);
+      const Eigen::Vector3d normal = mean_normal(corners(other, foot->facet));
+      if (std::none_of(at, next, [&](const auto& s) {
+            return mean_normal(corners(parts, s.second)).dot(normal) < -along;
+          }))
+        found.leaning = std::min(found.leaning, foot->at.distance);
+    }
+    at = next;
+  }
+  return found;
 }
 
 void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contract/port.hpp"
@@ -11,6 +13,16 @@
 #include "surface/mortar.hpp"
 
 namespace abut {
+
+/// [m] How near nodes are that have a foot inside of a facet of another surface; infinity: none is.
+struct EdgesNear {
+  static constexpr double none = std::numeric_limits<double>::infinity();
+  double sharp = none;    // at sharp edges
+  double leaning = none;  // of these, where neither facet beside lies along the other surface
+  double bent = none;     // where the surface turns like an edge
+
+  bool any() const { return sharp < none || bent < none; }
+};
 
 /// A surface whose nodes may have the rows of a contact, because it has sharp edges, or turns so
 /// much over a facet of the other side that this one sees an edge: averaged over facets around an
@@ -22,12 +34,12 @@ class EdgedSurface {
   /// count.
   EdgedSurface(const PortGeometry& surface, double size, double seen_by);
   /// It has sharp edges, or turns like them.
-  bool any() const { return !sharp_.empty(); }
+  bool any() const { return !sharp_.empty() || !bent_.empty(); }
 
-  /// Whether an edge lies over another surface, no farther from it than `reach` [m]; `tree` holds
-  /// that one's boxes. `pose`: [m] (points, dim) of this surface.
-  bool is_near(std::span<const double> pose, const PosedSurface& other, const BoxTree& tree,
-               double reach);
+  /// What of it lies over another surface, no farther from it than `reach` [m]; `tree` holds that
+  /// one's boxes. `pose`: [m] (points, dim) of this surface.
+  EdgesNear near(std::span<const double> pose, const PosedSurface& other, const BoxTree& tree,
+                 double reach);
   /// Rows of this surface's nodes against the other's facets, told as those of the other: T over
   /// its nodes, P over the points of this surface, normals out of this surface. `way`: [m] that the
   /// two go in the substep. `corners`: of the other surface and this one.
@@ -38,10 +50,11 @@ class EdgedSurface {
   PosedSurface pose_of(std::span<const double> pose);
 
   DividedSurface divided_;
-  std::vector<std::int32_t> sharp_;  // nodes
-  std::vector<double> points_;       // [m] (nodes, dim)
-  double longest_ = 0.0;             // [m] edge
-  std::int32_t parts_ = 1;           // of a facet
+  std::vector<std::pair<std::int32_t, std::int32_t>> sharp_;  // nodes with facets beside, ascending
+  std::vector<std::int32_t> bent_;                            // other nodes
+  std::vector<double> points_;                                // [m] (nodes, dim)
+  double longest_ = 0.0;                                      // [m] edge
+  std::int32_t parts_ = 1;                                    // of a facet
   BoxTree tree_;
   std::vector<FacetPair> pairs_;
   MortarOptions options_;

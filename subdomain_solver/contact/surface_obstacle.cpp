@@ -221,13 +221,20 @@ void SurfaceObstacle::give_way(std::span<const double> reaction) {
   for (std::size_t v = 0; v < z; ++v) pose_[zone_near_[v]] = moved_[v];
 }
 
-/// Once in a substep, with trees and pairs of its first look.
+/// Once in a substep, with trees and pairs of its first look. Before what is round, own edges of
+/// facets that lie along it do not matter, nor those that are farther from it.
 void SurfaceObstacle::choose_side(std::span<const double> pose) {
+  constexpr double as_near = 0.015;  // of a facet: below, nodes of both are there
   chosen_ = true;
   if (turned_ && held_) return;
+  turned_ = false;
+  if (pairs_.empty()) return;
   const double reach = options_.reach;
-  turned_ = !pairs_.empty() && edges_.is_near(pose_, posed(own_, pose), own_tree_, reach) &&
-            !own_edges_.is_near(pose, posed(near_, pose_), tree_, reach);
+  const EdgesNear its = edges_.near(pose_, posed(own_, pose), own_tree_, reach);
+  if (!its.any()) return;
+  const EdgesNear own = own_edges_.near(pose, posed(near_, pose_), tree_, reach);
+  turned_ = !own.any() || (its.sharp == EdgesNear::none && own.bent == EdgesNear::none &&
+                           own.leaning > its.bent + as_near * own_.spacing);
 }
 
 /// Rows of the port's nodes, each for itself [M.95].
