@@ -37,6 +37,9 @@ constexpr double no_impulse = 1.0e-9;
 
 /// Of the thickness: ties that are missed by less hold.
 constexpr double holds = 1.0e-3;
+/// The same with the forces of the step before, which they would keep for many steps: what they
+/// part by would grow until it is a blow, at an instant that roundings choose.
+constexpr double holds_at_once = 1.0e-6;
 /// Of the largest energy: what ties may do in a step. They take back what sides part by, on which
 /// their forces do some work, to and fro.
 constexpr double work_of_ties = 1.0e-6;
@@ -199,7 +202,8 @@ bool CommonStep::settle(double begin, double end, int looser, bool lenient,
 std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
   const double fit = statics_ ? fits_at_rest : fits;
-  if (rows_.empty() && ties_fit() && near_.check(from_, to_, rows_).pairs == 0) return std::nullopt;
+  if (rows_.empty() && ties_fit(holds_at_once) && near_.check(from_, to_, rows_).pairs == 0)
+    return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {
     const bool last = round + 1 == most_rounds;
     const bool told = !prepare_rows();
@@ -215,7 +219,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     double unfit = 0.0, work = 0.0;
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
-    if (round > 0 && ((unfit < fit * near_.thickness() && ties_fit()) || last)) {
+    if (round > 0 && ((unfit < fit * near_.thickness() && ties_fit(holds)) || last)) {
       if (work <= most_work() + rounding_of_work * most_ && ties_.passive()) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
@@ -349,8 +353,8 @@ void CommonStep::see_velocities() {
   ties_.see(tried_, asked_);
 }
 
-bool CommonStep::ties_fit() const {
-  return !ties_.any() || (ties_.missed() < holds * near_.thickness() && ties_.passive());
+bool CommonStep::ties_fit(double most) const {
+  return !ties_.any() || (ties_.missed() < most * near_.thickness() && ties_.passive());
 }
 
 /// By how much rows are missed at most [m], those that press and need not a tenth; and what their

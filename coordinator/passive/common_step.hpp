@@ -83,7 +83,7 @@ class CommonStep {
   void see_velocities();
   void find_impulses(bool any);
   void press_rows(bool any);
-  bool ties_fit() const;
+  bool ties_fit(double most) const;
   double most_work() const;
   void take_answer(int owner, double softer);
   void follow_ties();
