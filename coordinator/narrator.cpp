@@ -11,6 +11,7 @@
 #include "base/index.hpp"
 #include "base/unit_words.hpp"
 #include "coordinator/coupling/roles.hpp"
+#include "coordinator/coupling/tied_wholes.hpp"
 #include "coordinator/interface_spec.hpp"
 #include "coordinator/record/given_up_words.hpp"
 #include "surface/sharp_nodes.hpp"
@@ -135,6 +136,10 @@ void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints) {
            std::pair<const int&, const int&>(one, other);
   });
   std::string advice = "no interface joins them: give one, or contact: {everything: {}}";
+  const std::vector<int> wholes = tied_wholes(joints, bodies_.count());
+  if (wholes[index(a)] == wholes[index(b)])
+    advice = "they hang together by ties, and parts of one whole do not touch each other: give an "
+             "interface between them, or finer meshes of what is between them and gives way";
   if (joint != joints.end()) {
     advice = fmt::format(
         "contact '{}' has {}", joint->name,
