@@ -242,7 +242,11 @@ bool Controller::fly_free() {
 
 TimeWindow Controller::next_window() {
   TimeWindow next = clock_.next();
-  if (settles_) next = before_settled_end(next, scene_.time.end);
+  if (settles_) {
+    next = before_settled_end(next, scene_.time.end);
+    if (is_after_cut(next, scene_.time.end) && borne() > 1.0)
+      next.end = settled_further(next, scene_.time.end).value_or(next.end);
+  }
   return events_.even(next);
 }
 
@@ -255,9 +259,12 @@ void Controller::step_window() {
   events_.begin(window);
   if (ends_before(window)) return;
   bodies_.save_all();
+  const double borne_before = settles_ && window.end >= scene_.time.end ? borne() : 0.0;
   while (goes_on()) {
     try_window(window);
-    const Judgement judgement = judge(window);
+    Judgement judgement = judge(window);
+    if (judgement.verdict == Judgement::Verdict::accept && borne_before > 0.0)
+      judgement = judge_springs(window, borne_before);
     if (judgement.verdict == Judgement::Verdict::accept) {
       span.covers(window.begin, window.end);
       return accept(window);

@@ -126,6 +126,8 @@ class Controller {
   Judgement judge_ways(const TimeWindow& window);
   std::optional<Failed> made_by_themselves(const TimeWindow& window) const;
   Judgement judge_trouble(const TimeWindow& window);
+  Judgement judge_springs(const TimeWindow& window, double before);
+  double borne();
   void accept(const TimeWindow& window);
   void end_window(const TimeWindow& window, EnergyGuard::Verdict energy);
   int windows_to_fly();

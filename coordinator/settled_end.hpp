@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "contract/time_window.hpp"
 
 namespace abut {
@@ -9,5 +11,13 @@ namespace abut {
 /// done in short ones, in which loads hardly grow.
 ///   end: of the run [s]
 TimeWindow before_settled_end(TimeWindow next, double end);
+
+/// Whether a window begins within the last of these, which was cut as springs bore too much after
+/// it.
+bool is_after_cut(const TimeWindow& window, double end);
+
+/// [s] Where a window that would end a run ends instead, so that springs let go of more. Empty: it
+/// does not end the run, or has been cut as often as is worth while.
+std::optional<double> settled_further(const TimeWindow& window, double end);
 
 }  // namespace abut

@@ -44,6 +44,12 @@ bool is_stabilised(const Description& body) {
   return std::ranges::find(body.measures, "stabilisation.share") != body.measures.end();
 }
 
+double borne_over_allowed(const Description& body, std::span<const double> values) {
+  const double share = told(body, values, "stabilisation.share");
+  const double allowed = told(body, values, "stabilisation.at_most");
+  return share > 0.0 ? share / allowed : 0.0;  // infinite where it may bear nothing
+}
+
 std::string unheld(const Description& body, std::span<const double> values) {
   const double share = told(body, values, "stabilisation.share");
   const double allowed = told(body, values, "stabilisation.at_most");

@@ -18,6 +18,9 @@ bool is_stabilised(const Description& body);
 /// or none.
 std::vector<std::string> validity_notes(const Description& body, std::span<const double> values);
 
+/// What its stabilisation bears of the forces on it, over what it may bear at the end of a run.
+double borne_over_allowed(const Description& body, std::span<const double> values);
+
 /// Why a body that contact alone holds is not in equilibrium: its stabilisation bears more than is
 /// allowed. Empty: it is, or has none.
 std::string unheld(const Description& body, std::span<const double> values);

@@ -216,6 +216,21 @@ TEST(StabilisedStatics, LoadsMayGrowToTheEnd) {
   }
 }
 
+TEST(StabilisedStatics, WhatLeansOnSomethingSoftSettlesBeforeTheEnd) {
+  // Springs of a block that is 400 times as stiff as what it leans on, s = d 0.01 400 E, keep
+  // s/(s + E) of their force in a step, nine tenths: four short windows are not enough.
+  for (const int dim : {2, 3}) {
+    const Column column{.dim = dim, .unlike = 400.0, .rise = Column::windows};
+    SCOPED_TRACE(fmt::format("{}D", dim));
+    const auto run = column.run();
+    ASSERT_TRUE(run->completed()) << run->end.reason;
+    const double borne = run->measure("body.b1.stabilisation.share");
+    EXPECT_LT(borne, 0.01);
+    // What springs do not bear, the block below does; the sweeps' tolerance.
+    EXPECT_NEAR(reaction(*run, "y"), (1.0 - borne) * column.pressure, 2.0e-6 * column.pressure);
+  }
+}
+
 TEST(StabilisedStatics, AnswersDoNotDependOnTheStiffness) {
   // A column bends: what stabilises it is to be weak beside that.
   Column column{
