@@ -244,7 +244,7 @@ TimeWindow Controller::next_window() {
   TimeWindow next = clock_.next();
   if (settles_) {
     next = before_settled_end(next, scene_.time.end);
-    if (is_after_cut(next, scene_.time.end) && borne() > 1.0)
+    if (is_after_cut(next, scene_.time.end) && borne_of_allowed(bodies_) > 1.0)
       next.end = settled_further(next, scene_.time.end).value_or(next.end);
   }
   return events_.even(next);
@@ -259,7 +259,8 @@ void Controller::step_window() {
   events_.begin(window);
   if (ends_before(window)) return;
   bodies_.save_all();
-  const double borne_before = settles_ && window.end >= scene_.time.end ? borne() : 0.0;
+  const bool ends = settles_ && window.end >= scene_.time.end;
+  const double borne_before = ends ? borne_of_allowed(bodies_) : 0.0;
   while (goes_on()) {
     try_window(window);
     Judgement judgement = judge(window);

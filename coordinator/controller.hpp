@@ -102,8 +102,7 @@ class Controller {
     int limit = 1;          // at present
     bool grounded = false;  // came too near: step once
   };
-  // How long bodies stay passive [windows] before the accurate method is tried again.
-  struct Waiting {
+  struct Waiting {  // [windows] in which bodies stay passive before the accurate method is tried
     int wait = 2, left = 0, accurate = 0;
   };
 
@@ -127,7 +126,6 @@ class Controller {
   std::optional<Failed> made_by_themselves(const TimeWindow& window) const;
   Judgement judge_trouble(const TimeWindow& window);
   Judgement judge_springs(const TimeWindow& window, double before);
-  double borne();
   void accept(const TimeWindow& window);
   void end_window(const TimeWindow& window, EnergyGuard::Verdict energy);
   int windows_to_fly();

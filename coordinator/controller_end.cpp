@@ -10,6 +10,7 @@
 #include "coordinator/controller.hpp"
 #include "coordinator/coupling/watch.hpp"
 #include "coordinator/record/validity_notes.hpp"
+#include "coordinator/settled_end.hpp"
 
 namespace abut {
 
@@ -35,22 +36,12 @@ std::string Controller::Attempt::trouble(double tolerance) const {
       iterations, forces ? " of forces" : "", residual.largest(), tolerance);
 }
 
-/// What springs bear of the forces on the bodies that they stabilise, over what they may bear at
-/// the end: the largest.
-double Controller::borne() {
-  double most = 0.0;
-  for (int b = 0; b < bodies_.count(); ++b)
-    if (is_stabilised(bodies_.describe(b)))
-      most = std::max(most, borne_over_allowed(bodies_.describe(b), bodies_[b].measure()));
-  return most;
-}
-
 /// Springs of bodies that lean on something slender let go of little in a window: more short ones
 /// come before the end, unless they let go of nothing. before: what they bore before the window.
 Controller::Judgement Controller::judge_springs(const TimeWindow& window, double before) {
   const std::optional<double> end = settled_further(window, scene_.time.end);
   if (!end) return {};
-  const double after = borne();
+  const double after = borne_of_allowed(bodies_);
   if (after <= 1.0 || after > let_go * before) return {};
   return {Judgement::Verdict::cut, *end, {}};
 }

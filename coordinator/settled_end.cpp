@@ -1,6 +1,9 @@
 #include "coordinator/settled_end.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "coordinator/record/validity_notes.hpp"
 
 namespace abut {
 
@@ -40,6 +43,14 @@ std::optional<double> settled_further(const TimeWindow& window, double end) {
   if (window.end < end - rounded * left) return std::nullopt;
   if (left < std::pow(1.0 - cut_part, most_cuts) * short_window(window)) return std::nullopt;
   return window.begin + cut_part * left;
+}
+
+double borne_of_allowed(Bodies& bodies) {
+  double most = 0.0;
+  for (int b = 0; b < bodies.count(); ++b)
+    if (is_stabilised(bodies.describe(b)))
+      most = std::max(most, borne_over_allowed(bodies.describe(b), bodies[b].measure()));
+  return most;
 }
 
 }  // namespace abut

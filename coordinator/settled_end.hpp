@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "contract/time_window.hpp"
+#include "coordinator/coupling/bodies.hpp"
 
 namespace abut {
 
@@ -19,5 +20,9 @@ bool is_after_cut(const TimeWindow& window, double end);
 /// [s] Where a window that would end a run ends instead, so that springs let go of more. Empty: it
 /// does not end the run, or has been cut as often as is worth while.
 std::optional<double> settled_further(const TimeWindow& window, double end);
+
+/// What springs bear of the forces on the bodies that they stabilise, over what they may bear at the
+/// end of a run: the largest. Asks these bodies for their measures.
+double borne_of_allowed(Bodies& bodies);
 
 }  // namespace abut

@@ -222,6 +222,16 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
 }
 
 void SolidInterior::state(Archive& archive) {
+  state_of_motion(archive);
+  if (surfaces_ != nullptr) surfaces_->state(archive);
+  if (parts_.problem->model->is_linear()) return;
+  MasslessLayer* layer = parts_.scheme.integrator->able().layer;
+  if (layer != nullptr && !layer->empty()) return layer->state(archive);
+  std::vector<double> none;  // statics have no layer; stages after them may
+  archive.field("layer_place", none);
+}
+
+void SolidInterior::state_of_motion(Archive& archive) {
   archive.field("time", state_.time);
   state_.motion.state(archive);
   archive.field("begun", state_.begun);
@@ -229,12 +239,6 @@ void SolidInterior::state(Archive& archive) {
   archive.field("port_work", state_.port_work);
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
-  if (surfaces_ != nullptr) surfaces_->state(archive);
-  if (parts_.problem->model->is_linear()) return;
-  MasslessLayer* layer = parts_.scheme.integrator->able().layer;
-  if (layer != nullptr && !layer->empty()) return layer->state(archive);
-  std::vector<double> none;  // statics have no layer; stages after them may
-  archive.field("layer_place", none);
 }
 
 std::optional<Failed> SolidInterior::begin(const Window& window) {

@@ -160,6 +160,7 @@ class SolidInterior final : public Interior,
   void watch_crossings();
   void follow_ports(double time);
   void add_port_work();
+  void state_of_motion(Archive& archive);
   void add_work_of_impulses();
   const Vector& forces_on_ports();
   void reactions(std::vector<double>& out);
@@ -179,7 +180,6 @@ class SolidInterior final : public Interior,
   State state_;
   std::optional<BodyRecord> swapped_;  // as another model has left the body; the begin settles it
   bool stands_ = false;         // it has taken over a state in balance, which no window has left
-  std::vector<double> places_;  // [m] (port values)
   std::vector<double> worked_;  // [J] (ports) that came through them in the window so far
   PortValues seen_;
   int substep_ = 0;  // the last one of the window
@@ -188,7 +188,7 @@ class SolidInterior final : public Interior,
   std::vector<double> u_, v_;  // (nodes, dim) along the axes of space, as see_nodes() left them
   std::vector<double> lag_;                  // [m/s] of velocities behind the impulses
   Vector momentum_, behind_, nodes_behind_;  // [kg m/s]; behind the impulses: of coordinates, nodes
-  std::vector<double> before_, now_;         // [m], [N] (port values)
+  std::vector<double> places_, before_, now_;  // [m], [m], [N] (port values)
   mutable Vector change_, on_ports_;         // [N] (coordinates), (nodes, dim)
   std::unique_ptr<PortForecast> forecast_;   // null: only walks tell where ports go
   std::unique_ptr<PortStatics> statics_;     // null: the body has inertia, or no ports

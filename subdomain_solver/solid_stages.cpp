@@ -20,12 +20,14 @@ void SolidInterior::take_over(Archive& archive, Before by) {
   const bool statics = by == Before::statics;
   const std::string of = fmt::format("body '{}'", description_.name);
   const std::vector<double> start = state_.motion.v;
-  state(archive);
+  // Contact in passive form finds its forces anew, and has no place for those of before.
+  const bool anew = by != Before::own && parts_.massive_surface;
+  anew ? state_of_motion(archive) : state(archive);
   if (by == Before::own) {
     stands_ = state_.begun && !is_passive();
     return;
   }
-  if (surfaces_ == nullptr) archive.leave_rest();  // contact in passive form finds its forces anew
+  if (surfaces_ == nullptr) archive.leave_rest();
   Motion& motion = state_.motion;
   if (description_.quasi_static && !statics)
     throw RunError("moves, and a stage without inertia cannot go on from there", of,

@@ -200,9 +200,10 @@ class Fits(SystemTest):
 
 
 class Rest(SystemTest):
-    def check(self, *kind):
+    def check(self, *kind, above="[2, 2]"):
         path = self.folder / "scene.yaml"
-        path.write_text(scene(*kind), encoding="utf-8")
+        text = scene(*kind).replace("elements: [2, 2]", f"elements: {above}")
+        path.write_text(text, encoding="utf-8")
         out = self.folder / "run"
         self.succeed(self.abut("run", path, "--local", "--force", "--out", out))
         with open(out / "history.csv", newline="") as file:
@@ -225,6 +226,12 @@ class Rest(SystemTest):
         for kind in itertools.product(("quad4", "tri3"), LAWS, MEETINGS, SCHEMES):
             with self.subTest(kind=kind):
                 self.check(2, *kind)
+
+    def test_bodies_without_a_node_inside(self):
+        """They have massless surfaces in statics alone, and passive contact in motion."""
+        for kind in itertools.product(LAWS, ("friction", "everything"), SCHEMES):
+            with self.subTest(kind=kind):
+                self.check(2, "quad4", *kind, above="[1, 1]")
 
     def test_quotes_make_no_other_model(self):
         """As scenes in JSON have them; the body goes on with what statics have left."""
