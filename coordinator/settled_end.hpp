@@ -21,8 +21,8 @@ bool is_after_cut(const TimeWindow& window, double end);
 /// does not end the run, or has been cut as often as is worth while.
 std::optional<double> settled_further(const TimeWindow& window, double end);
 
-/// What springs bear of the forces on the bodies that they stabilise, over what they may bear at the
-/// end of a run: the largest. Asks these bodies for their measures.
+/// What springs bear of the forces on the bodies that they stabilise, over what they may bear at
+/// the end of a run: the largest. Asks these bodies for their measures.
 double borne_of_allowed(Bodies& bodies);
 
 }  // namespace abut

@@ -15,6 +15,9 @@ constexpr double far_share = 0.5;
 /// Of the largest coordinate: what places, distances and ways are rounded by altogether is far
 /// less, and what bodies do to each other is of windows that are far longer.
 constexpr double distance_rounding = 1.0e-12;
+/// Of a facet's size: what overlaps by less at the start does so by roundings of its places, and
+/// is apart by that on the wrong sides.
+constexpr double touching = 1.0e-6;
 
 struct Boxes {
   double apart = 0.0;   // [m]
@@ -118,12 +121,16 @@ bool swept_apart(const Joint& joint, double margin, const Bodies& bodies) {
 
 bool kept_apart(const Joint& joint, const Approach& before, double margin, const Bodies& bodies,
                 double length) {
-  if (swept_apart(joint, margin, bodies)) return true;
+  const double facet = std::max(bodies.port(joint.sides[0]).geometry.spacing,
+                                bodies.port(joint.sides[1]).geometry.spacing);
+  const bool touched = before.apart <= touching * facet;
+  if (swept_apart(joint, touched ? margin + touching * facet : margin, bodies)) return true;
   const Approach now = approach_of(joint, margin, bodies);
   const double rounded =
       distance_rounding * std::max(largest_coordinate(port_of(bodies, joint.sides[0])),
                                    largest_coordinate(port_of(bodies, joint.sides[1])));
-  return before.apart + now.apart > length * fastest_closing(joint, bodies, before, now) + rounded;
+  const double apart = touched ? now.apart - before.apart : now.apart + before.apart;
+  return apart > length * fastest_closing(joint, bodies, before, now) + rounded;
 }
 
 }  // namespace abut

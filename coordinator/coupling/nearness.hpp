@@ -15,7 +15,8 @@ bool swept_apart(const Joint& joint, double margin, const Bodies& bodies);
 
 /// Whether the sides stayed apart over the last replies, which span `length` [s] from where
 /// `before` was measured: their swept boxes did in every record's part, or what they were apart at
-/// both ends is more than they can have come together in between.
+/// both ends is more than they can have come together in between. Sides that touched before may
+/// have overlapped by roundings.
 bool kept_apart(const Joint& joint, const Approach& before, double margin, const Bodies& bodies,
                 double length);
 

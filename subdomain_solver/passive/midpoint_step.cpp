@@ -358,18 +358,29 @@ std::optional<Failed> MidpointStep::finish(Motion& motion, const Vector& impulse
   return std::nullopt;
 }
 
-/// The middle is the end. Supports work by the means of what they bear before and after.
+/// The middle is the end. Loads and supports work by the means of their forces before and after:
+/// supports go their way in the first of the steps from one instant to another, and what they bear
+/// at its end is found by the last.
 std::optional<Failed> MidpointStep::rest(Motion& motion, const Vector& impulse) {
   moved_.resize(motion.q.size());
   view(moved_) = view(middle_) - view(motion.q);
+  Vector loads = Vector::Zero(loads_.size());  // [N] before
+  for (const Load* load : body_.loads) load->add(start_, motion.q, loads);
+  loads = 0.5 * (loads + loads_);
   double work = 0.0;
-  for (const int i : free_.list()) work += loads_(i) * moved_[i];
+  for (const int i : free_.list()) work += loads(i) * moved_[i];
   std::vector<double> borne(motion.q.size(), 0.0);
+  if (gone_.start != start_ || gone_.end != end_) gone_ = {start_, end_, borne};
   for (const Prescribed& p : body_.problem->supports) {
     const std::size_t i = index(p.dof);
     const double answer = response_.force(p.dof) - impulse(p.dof) / length_;
     borne[i] = answer - loads_(p.dof);
-    work += (0.5 * (motion.force[i] + borne[i]) + loads_(p.dof)) * moved_[i];
+    if (moved_[i] != 0.0) {
+      gone_.way[i] = moved_[i];
+      work += (0.5 * (motion.force[i] + borne[i]) + loads(p.dof)) * moved_[i];
+    } else {
+      work += 0.5 * (borne[i] - motion.force[i]) * gone_.way[i];
+    }
   }
   motion.force.swap(borne);
   motion.q = middle_;

@@ -102,6 +102,10 @@ class MidpointStep {
   FreeCoordinates free_;
   Vector mass_;     // [kg] (dofs) in a step
   int looser_ = 0;  // than that of the body
+  struct Gone {     // supports of a body that rests, from one instant [s] to another
+    double start = 0.0, end = 0.0;
+    std::vector<double> way;  // [m] (coordinates)
+  } gone_;
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
   FreeStep unpushed_;
   Factors own_;        // of a step under impulses

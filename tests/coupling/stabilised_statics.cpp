@@ -188,6 +188,30 @@ TEST(PassiveStatics, ColumnsPressAsTheirOverlapSays) {
   }
 }
 
+/// A block that a support presses onto another one and drags along it, against friction: the work
+/// is that which the accurate method finds.
+TEST(PassiveStatics, SupportsWorkByTheForcesInWhichStepsEnd) {
+  const Column column{.law = "neo_hookean"};
+  const SolidText lower = column.block(0);
+  SolidText upper = lower;
+  upper.name = "b1";
+  upper.sides = {"bottom"};
+  upper.position = {0.0, 1.0};
+  upper.more =
+      "    constraints: {grip: {on: top, x: '0.05 * max(0, t - 2) / 8', y: '-1e-3 * min(t, 2)'}}\n";
+  const auto work = [&](const std::string& schwarz, bool passive) {
+    const auto run = run_solids(10, 1.0, {lower, upper},
+                                "  j0: {sides: [b0.top, b1.bottom], contact: {friction: 0.3}}\n"
+                                "schwarz: {" + schwarz + "}\n");
+    EXPECT_TRUE(run->completed()) << run->end.reason;
+    EXPECT_EQ(run->end.given_up.windows > 0, passive);
+    return run->measure("body.b1.energy.external_work");
+  };
+  const double accurate = work("on_nonconvergence: stop", false);
+  // Forces on nodes are right to some hundredths.
+  EXPECT_NEAR(work("max_iterations: 1", true), accurate, 0.03 * accurate);
+}
+
 TEST(StabilisedStatics, WhatDoesNotConvergeIsToldWithItsRemedy) {
   // Springs that are weaker than what presses on a block over its height do not hold it upright
   // while sweeps look for its contacts.
@@ -212,6 +236,24 @@ TEST(StabilisedStatics, LoadsMayGrowToTheEnd) {
       EXPECT_NEAR(run->measure("body.b1.stabilisation.share"), borne, 5 * 2.0e-3 * borne);
       // The sweeps' tolerance.
       EXPECT_NEAR(reaction(*run, "y"), (1.0 - borne) * column.pressure, 2.0e-6 * column.pressure);
+    }
+  }
+}
+
+/// A block at rest is pushed by what it touches at once, in the window in which that moves, through
+/// what it is in by roundings of their places.
+TEST(StabilisedStatics, OverlapsByRoundingsAreTouches) {
+  for (const int dim : {2, 3}) {
+    for (const double overlap : {1.0e-9, 1.0e-7}) {
+      const Column column{.dim = dim, .floating = 2, .gap = -overlap};
+      SCOPED_TRACE(fmt::format("{}D, {} m", dim, overlap));
+      const auto run = column.run();
+      ASSERT_TRUE(run->completed()) << run->end.reason;
+      EXPECT_NEAR(reaction(*run, "y"), column.pressure, 2.0e-6 * column.pressure);  // as above
+      // From the first window on: p L/E of the three below each middle, and what parts them.
+      const double down = column.pressure / Column::youngs * 2.5 - 2.0 * overlap;
+      EXPECT_NEAR(run->measure("body.b2.displacement.y.mean"), -down, 1.0e-6 * down);  // the same
+      EXPECT_NEAR(run->measure("contact.j0.begin"), 1.0, 0.01);  // the end of the first window
     }
   }
 }
