@@ -44,7 +44,10 @@ BalanceMeasures::BalanceMeasures(const RunStart& start, const ClosedForm* exact)
       exact_(exact),
       recorded_(recorded_bodies(start.bodies)),
       bodies_(recorded_.size()) {
-  for (const Description* body : start.bodies) immovable_ = immovable_ || std::isinf(body->mass);
+  for (const Description* body : start.bodies) {
+    immovable_ = immovable_ || std::isinf(body->mass);
+    for (const Port& port : body->ports) round_ = round_ || port.geometry.round;
+  }
   if (exact == nullptr) return;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const int bar = exact->bar_index(recorded_[b].name);
@@ -119,6 +122,7 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
     double square = 0.0;
     for (std::size_t k = 0; k < momentum.size(); ++k) {
       body.momentum[k] = momentum[k];
+      if (round_ && k == 0) continue;  // away from the axis on all sides
       sum[k] += momentum[k];
       square += momentum[k] * momentum[k];
     }
@@ -132,7 +136,7 @@ void BalanceMeasures::add(const WindowReport& report, std::size_t record) {
   total_peak_ = std::max(total_peak_, std::abs(held));
   drift_max_ = std::max(drift_max_, std::abs(drift_));
   double square = 0.0;
-  for (std::size_t k = 0; k < sum.size(); ++k)
+  for (std::size_t k = round_ ? 1 : 0; k < sum.size(); ++k)
     square += (sum[k] - momentum_first_[k]) * (sum[k] - momentum_first_[k]);
   momentum_change_ = std::max(momentum_change_, std::sqrt(square));
   add_angular(report, record);
@@ -169,7 +173,9 @@ void BalanceMeasures::write_angular(Measures& out) const {
     all_told = all_told && !bodies_[b].untold;
   }
   if (out.scope.dim == 1) return;
-  if (!all_told) {
+  if (round_) {
+    out.none("angular_momentum.total", "bodies of revolution have none across their axis");
+  } else if (!all_told) {
     out.none("angular_momentum.total", untold_angular);
   } else if (immovable_) {
     out.none("angular_momentum.total", "an immovable body takes momentum and does not keep it");

@@ -56,6 +56,7 @@ class BalanceMeasures {
   std::vector<Body> bodies_;  // as recorded
   bool begun_ = false;
   bool immovable_ = false;
+  bool round_ = false;  // bodies of revolution
   double total_first_ = 0.0;              // [J]
   double total_peak_ = 0.0;               // [J] as of a body
   double drift_ = 0.0, drift_max_ = 0.0;  // [J]

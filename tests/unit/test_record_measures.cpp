@@ -272,6 +272,16 @@ TEST(Measures, MomentumDeviationIsRelativeToWhatTheBodiesCarry) {
   EXPECT_NEAR(measure(recorder, "momentum.right.end"), -3.0, roundoff);
 }
 
+TEST(Measures, WhatGoesAwayFromAnAxisOnAllSidesIsNoMomentum) {
+  HandMadeRun run;
+  run.bodies[0].ports[0].geometry.round = true;
+  MeasureRecorder recorder(nullptr);
+  run.momentum = [](int side, double time) { return side == 1 ? -3.0 : 1.0 + time; };  // radial
+  run.play(recorder);
+  EXPECT_EQ(measure(recorder, "momentum.total"), 0.0);
+  EXPECT_NEAR(measure(recorder, "momentum.right.end"), -3.0, roundoff);
+}
+
 TEST(Measures, ImmovableBodyLeavesTotalMomentumWithoutValue) {
   HandMadeRun run;
   run.bodies[1].mass = std::numeric_limits<double>::infinity();
