@@ -22,6 +22,9 @@ constexpr double fits = 0.05;
 constexpr double fits_at_rest = 1.0e-3;
 /// [1/(thickness/step)] of velocities of rows: less is no change.
 constexpr double negligible = 1.0e-3;
+/// Of both, where rows fit and pairs that they hold come too near all the same: those were nearer
+/// than what fits.
+constexpr double finer = 0.1;
 /// Of the largest energy: the rounding of work.
 constexpr double rounding_of_work = 1.0e-9;
 /// What parts surfaces that are too near: this share of what they miss in a step, at most so many
@@ -201,7 +204,8 @@ bool CommonStep::settle(double begin, double end, int looser, bool lenient,
 /// do freely is the first answer where they told of all points that are pressed then.
 std::optional<CommonStep::Refusal> CommonStep::iterate() {
   int checks = 0;
-  const double fit = statics_ ? fits_at_rest : fits;
+  fine_ = 1.0;
+  const double fit = (statics_ ? fits_at_rest : fits) * near_.thickness();
   if (rows_.empty() && ties_fit(holds_at_once) && near_.check(from_, to_, rows_).pairs == 0)
     return std::nullopt;
   for (int round = 0; round < most_rounds; ++round) {
@@ -219,7 +223,7 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
     double unfit = 0.0, work = 0.0;
     rows_ask(unfit, work);
     const std::size_t known = rows_.size();
-    if (round > 0 && ((unfit < fit * near_.thickness() && ties_fit(holds)) || last)) {
+    if (round > 0 && ((unfit < fine_ * fit && ties_fit(fine_ * holds)) || last)) {
       if (work <= most_work() + rounding_of_work * most_ && ties_.passive()) {
         const NearRows::Crossed crossed = near_.check(from_, to_, rows_);
         if (crossed.pairs == 0) return std::nullopt;
@@ -227,7 +231,8 @@ std::optional<CommonStep::Refusal> CommonStep::iterate() {
           why_ = fmt::format("{} pairs of features come too near", crossed.pairs);
           return last ? Refusal::rows : Refusal::path;
         }
-        if (crossed.added > 0) softer_ = 0;
+        softer_ = 0;
+        if (crossed.added == 0) fine_ *= finer;
       } else if (last) {
         why_ = fmt::format("contact would do {:.3g} J, and ties {:.3g} J", work, ties_.work());
         return Refusal::work;
@@ -385,7 +390,8 @@ double CommonStep::most_work() const {
 void CommonStep::solve_rows(std::size_t answered) {
   const int doubled = std::clamp(softer_ - softer_from, 0, softest);
   for (int b = 0; b < bodies_.count(); ++b) take_answer(b, std::ldexp(1.0, doubled));
-  const double still = (statics_ ? fits_at_rest : 1.0) * negligible * near_.thickness() / length();
+  const double still =
+      fine_ * (statics_ ? fits_at_rest : 1.0) * negligible * near_.thickness() / length();
   const double rounding = 1.0e-3 * rounding_of_work * most_;
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
   solver.press_from(answered);

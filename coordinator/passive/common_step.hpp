@@ -122,6 +122,7 @@ class CommonStep {
   double released_ = 0.0;                             // [J] beside, by rows that part
   int softer_ = 0;                                    // solves of these rows so far
   int looser_ = 0;                                    // than in a first step bodies are held
+  double fine_ = 1.0;                                 // times what fits, in this step
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
   std::map<std::int32_t, double> owed_;               // [J] to rows, by their first points
   std::map<std::int32_t, double> unclaimed_;          // of it, by no row of this step yet
