@@ -4,6 +4,10 @@ set(ABUT_SANITIZE "" CACHE STRING "Sanitizers to build with")
 if(ABUT_SANITIZE)
   add_compile_options(-fsanitize=${ABUT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${ABUT_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC 12.2 crashes in this pass (during IPA pass: cp), with precompiled headers of Protocol Buffers.
+    add_compile_options(-fno-ipa-cp)
+  endif()
 endif()
 # The address sanitizer sees what a null pointer, or one beyond its object, is used for; without a
 # look at each of them a build takes two thirds of the time.
