@@ -5,7 +5,7 @@ if(ABUT_SANITIZE)
   add_compile_options(-fsanitize=${ABUT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${ABUT_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12.2 crashes in this pass (during IPA pass: cp), with precompiled headers of Protocol Buffers.
+    # GCC 12.2 crashes in this pass with precompiled headers of Protocol Buffers.
     add_compile_options(-fno-ipa-cp)
   endif()
 endif()
