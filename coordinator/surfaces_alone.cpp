@@ -20,6 +20,9 @@ using Facets = std::vector<std::size_t>;
 
 /// [rad], [sr] What closed surfaces are seen by from outside, up to rounding of their facets' sum.
 constexpr double nothing = 1.0e-9;
+/// Points of all partners that are asked of a part, but a few of each: which side they are on does
+/// not take more, and large surfaces of large partners would take minutes.
+constexpr int points_asked = 200, least_asked = 4;
 
 /// Facets of a port by what hangs together: facets that share a node do.
 std::vector<Facets> parts_of(const PosedSurface& surface) {
@@ -54,12 +57,15 @@ struct Part {
   }
 };
 
-/// [rad], [sr] Mean of what the points of a partner see of a part.
-double seen_by(const PortGeometry& partner, const PosedSurface& part) {
+/// [rad], [sr] Mean of what points of a partner see of a part: of so many at most, evenly chosen.
+double seen_by(const PortGeometry& partner, const PosedSurface& part, int most) {
   const PosedSurface other = posed(partner);
+  const int each = 1 + (other.node_count() - 1) / most;
   double sum = 0.0;
-  for (int k = 0; k < other.node_count(); ++k) sum += solid_angle(part, other.point(k));
-  return other.node_count() > 0 ? sum / other.node_count() : 0.0;
+  int asked = 0;
+  for (int k = 0; k < other.node_count(); k += each, ++asked)
+    sum += solid_angle(part, other.point(k));
+  return asked > 0 ? sum / asked : 0.0;
 }
 
 void turn(PortGeometry& port, const Facets& part) {
@@ -115,12 +121,14 @@ void turn_surfaces_alone(const Scene& scene, Bodies& bodies) {
     Description told = body;
     for (Port& port : told.ports) {
       const std::vector<const PortGeometry*> partners = partners_of(scene, bodies, b, port.name);
+      const int count = std::max(1, static_cast<int>(partners.size()));
+      const int most = std::max(least_asked, points_asked / count);
       for (const Facets& facets : parts_of(posed(port.geometry))) {
         const Part part(port.geometry, facets);
         const PosedSurface surface{port.geometry.dim, port.geometry.points, part.facets,
                                    part.offsets};
         double seen = 0.0;
-        for (const PortGeometry* partner : partners) seen += seen_by(*partner, surface);
+        for (const PortGeometry* partner : partners) seen += seen_by(*partner, surface, most);
         if (seen < -nothing) turn(port.geometry, facets);
       }
     }
