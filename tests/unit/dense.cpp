@@ -127,5 +127,13 @@ TEST(Dense, PivotsOfLuMultiplyToTheDeterminant) {
   EXPECT_NEAR(determinant_of(a), -2.0, rounding);
 }
 
+// Bits of products depend on how sums are cut into parts, which Eigen does by the caches that it
+// believes in (cmake/floating_point.cmake).
+TEST(Dense, SumsAreCutAlikeOnAllMachines) {
+  EXPECT_EQ(Eigen::l1CacheSize(), 32768);
+  EXPECT_EQ(Eigen::l2CacheSize(), 1048576);
+  EXPECT_EQ(Eigen::l3CacheSize(), 33554432);
+}
+
 }  // namespace
 }  // namespace abut::dense_tests
