@@ -34,6 +34,14 @@ RowImpulses::RowImpulses(std::vector<DistanceRow>& rows, PressedPoints& points,
   for (const DistanceRow& row : rows_) answers_.push_back(answer_of(row));
 }
 
+/// Product of a direction with the values of a point from `slot` on.
+double RowImpulses::along(const Eigen::Vector3d& direction, const Eigen::VectorXd& values,
+                          int slot) const {
+  double sum = 0.0;
+  for (int k = 0; k < dim_; ++k) sum += direction(k) * values(slot + k);
+  return sum;
+}
+
 RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   Answer answer;
   for (const std::size_t s : {0u, 1u}) {
@@ -54,8 +62,7 @@ RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
     visit_pressed(row, answer.body[s], [&](int slot, std::size_t i) {
       for (int d = 0; d < directions; ++d)
         for (int e = 0; e < directions; ++e)
-          own(e, d) +=
-              row.share_on(i, e).head(dim_).dot(answer.change[index(d)][s].segment(slot, dim_));
+          own(e, d) += along(row.share_on(i, e), answer.change[index(d)][s], slot);
     });
   }
   answer.normal = own(0, 0);

@@ -41,6 +41,7 @@ class RowImpulses {
     double normal = 0.0, tangential = 0.0;  // [1/kg] of its own; the larger one of tangents
   };
 
+  double along(const Eigen::Vector3d& direction, const Eigen::VectorXd& values, int slot) const;
   Answer answer_of(const DistanceRow& row) const;
   template <class See>
   void visit_pressed(const DistanceRow& row, int body, const See& see) const;
