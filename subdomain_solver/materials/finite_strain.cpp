@@ -15,18 +15,28 @@ double volume_growth(const Matrix3& h) {
   return h.trace() + minors + h.determinant();
 }
 
+bool is_admissible(double j) { return j > 0.0 && std::isfinite(j); }
+
+/// Of H = F - I.
+Matrix3 green_of(const Matrix3& h) { return 0.5 * (h + h.transpose() + h.transpose() * h); }
+
 }  // namespace
+
+bool green_strain(const Matrix3& f, Matrix3& out) {
+  out = green_of(f - Matrix3::Identity());
+  return is_admissible(f.determinant());
+}
 
 bool FiniteStrain::from(const Matrix3& f, FiniteStrain& out) {
   const double j = f.determinant();
-  if (!(j > 0.0) || !std::isfinite(j)) return false;
+  if (!is_admissible(j)) return false;
   const Matrix3 h = f - Matrix3::Identity();
   // Beyond the neighbourhood of I the determinant itself is the more accurate one.
   const bool near = h.cwiseAbs().maxCoeff() < 0.25;
   const double growth = near ? volume_growth(h) : j - 1.0;
   out.log_volume = near ? std::log1p(growth) : std::log(j);
   out.square_growth = growth * (2.0 + growth);
-  out.green = 0.5 * (h + h.transpose() + h.transpose() * h);
+  out.green = green_of(h);
   out.finger = h + h.transpose() + h * h.transpose();
   out.inverse_transpose = f.inverse().transpose();
   return out.inverse_transpose.allFinite();

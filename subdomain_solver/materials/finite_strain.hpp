@@ -17,6 +17,9 @@ struct FiniteStrain {
   [[nodiscard]] static bool from(const Matrix3& f, FiniteStrain& out);
 };
 
+/// E of F, in H as above, for laws that need nothing else of it. False: as of FiniteStrain::from.
+[[nodiscard]] bool green_strain(const Matrix3& f, Matrix3& green);
+
 /// Deviator of a symmetric tensor.
 inline Matrix3 deviator(const Matrix3& a) { return a - a.trace() / 3.0 * Matrix3::Identity(); }
 

@@ -14,9 +14,20 @@ IsotropicMaterial::IsotropicMaterial(const Moduli& moduli, double density)
                    "square of the wave speed, which the moduli and the density give,", "m^2/s^2");
 }
 
+namespace {
+
+/// x 0 is 0 of finite numbers alone; sums are compiled to few instructions, where allFinite() asks
+/// number by number.
+template <class Numbers>
+bool are_finite(const Numbers& numbers) {
+  return (0.0 * numbers).sum() == 0.0;
+}
+
+}  // namespace
+
 bool is_finite(const PointResponse& answer, Need want) {
   return std::isfinite(answer.energy) && std::isfinite(answer.dissipation) &&
-         answer.stress.allFinite() && (want == Need::stress || answer.tangent.allFinite());
+         are_finite(answer.stress) && (want == Need::stress || are_finite(answer.tangent));
 }
 
 }  // namespace abut
