@@ -1,6 +1,6 @@
 # The front door. Every target checks what it needs first, skips what is done, and may be run again.
 .DEFAULT_GOAL := help
-.PHONY: help demo build install uninstall package test fuzz hostile sanitize bench results extremes robustness reliability clean dependencies-build dependencies-test dependencies-bench dependencies-package
+.PHONY: help demo build install uninstall package test fuzz hostile sanitize bench results extremes robustness reliability soak clean dependencies-build dependencies-test dependencies-bench dependencies-package
 
 PRESET ?= release
 WITH ?=
@@ -24,6 +24,7 @@ help:
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
 	@echo "make robustness  the tables of docs/ROBUSTNESS.md, measured anew (minutes)"
 	@echo "make reliability TRIALS=12  docs/RELIABILITY.md: runs killed at random moments and resumed"
+	@echo "make soak EXCHANGES=1000000 WINDOWS=1000000   long runs: memory, open files, rest (an hour)"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
 	@echo "Optional libraries are used when they are named: make build WITH=\"cholmod exodus\""
 	@echo "Missing Debian packages are installed first, with sudo when you are not root."
@@ -100,6 +101,11 @@ reliability: build
 	/usr/bin/python3 bench/reliability.py $(BIN) $(TRIALS) >build/RELIABILITY.md; code=$$?; \
 	  echo >>build/RELIABILITY.md; sed -n '/^## Under sanitizers/,$$p' docs/RELIABILITY.md >>build/RELIABILITY.md; \
 	  mv build/RELIABILITY.md docs/; exit $$code
+
+EXCHANGES ?= 1000000
+WINDOWS ?= 1000000
+soak: build
+	/usr/bin/python3 bench/soak.py $(BIN) $(EXCHANGES) $(WINDOWS)
 
 clean:
 	rm -rf build
