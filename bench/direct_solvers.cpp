@@ -1,7 +1,8 @@
-/// Direct solvers side by side: analysis, factor, solve and memory of linear elastic bodies clamped
-/// at one end, cubes, a slender bar and a sheet. Beside the product's own (docs/adr/0035) Eigen's,
-/// MUMPS and SuperLU where their packages are installed, CHOLMOD in a build with it. The last two
-/// and MUMPS are as fast as the machine's BLAS.
+/// Linear solvers side by side: analysis, factor, solve and memory of linear elastic bodies clamped
+/// at one end, cubes, a slender bar and a sheet. Beside the product's own, direct (docs/adr/0035)
+/// and by multigrid (docs/adr/0052), Eigen's, MUMPS and SuperLU where their packages are installed,
+/// CHOLMOD in a build with it. The last two and MUMPS are as fast as the machine's BLAS. Cubes
+/// above what factors take are solved by multigrid alone.
 ///
 ///   abut_bench_direct_solvers [LARGEST_BODY [SOLVERS]]     of unknowns; own alone, or all
 
@@ -32,6 +33,7 @@
 #include "base/index.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
+#include "subdomain_solver/make/linear_choice.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 #include "subdomain_solver/solve/multifrontal_solver.hpp"
@@ -174,8 +176,13 @@ void measure_mumps(const SparseMatrix& k, const Vector& b) {
 }
 #endif
 
-/// Stiffness of a body clamped on the left.
-SparseMatrix stiffness(const Mesh& mesh) {
+/// Of a body clamped on the left.
+struct System {
+  SparseMatrix stiffness;
+  CoarseMotions motions;
+};
+
+System system_of(const Mesh& mesh) {
   FeModel model(Mesh(mesh), std::make_unique<LinearElastic>(Moduli{1.25, 0.5}, 1.0), {});
   ModelResponse response;
   const std::vector<double> rest(index(model.dofs()), 0.0);
@@ -185,9 +192,11 @@ SparseMatrix stiffness(const Mesh& mesh) {
     for (int i = 0; i < mesh.dim; ++i)
       supports.push_back({mesh.dim * node + i, [](double) { return 0.0; }});
   std::ranges::sort(supports, {}, &Prescribed::dof);
-  SparseMatrix k;
-  FreeCoordinates(model.dofs(), supports).extract(response.tangent, k);
-  return k;
+  std::vector<int> held;
+  for (const Prescribed& p : supports) held.push_back(p.dof);
+  System out{{}, coarse_motions(model, held)};
+  FreeCoordinates(model.dofs(), supports).extract(response.tangent, out.stiffness);
+  return out;
 }
 
 Mesh box(const std::array<int, 3>& cells) {
@@ -205,11 +214,14 @@ Mesh sheet(int edge) {
 }
 
 void compare(const char* body, const Mesh& mesh, int largest, bool all) {
-  const SparseMatrix k = stiffness(mesh);
-  if (k.rows() > largest) return;
+  if (mesh.dim * mesh.node_count() > largest) return;
+  const System system = system_of(mesh);
+  const SparseMatrix& k = system.stiffness;
   fmt::print("{}, {} unknowns, {} entries\n", body, k.rows(), k.nonZeros());
   const Vector b = Vector::LinSpaced(k.rows(), -1.0, 2.0);
-  measure("abut", make_multifrontal_solver(Pivots::with_digits), k, b);
+  measure("abut, multigrid", make_conjugate_gradients(1.0e-10, system.motions), k, b);
+  if (k.rows() > most_factored) return;
+  measure("abut, fronts", make_multifrontal_solver(Pivots::with_digits), k, b);
   if (!all) return;
 #ifdef ABUT_HAVE_CHOLMOD
   measure_eigen<Eigen::CholmodSupernodalLLT<SparseMatrix>>("CHOLMOD", k, b);
@@ -239,6 +251,8 @@ int main(int argc, char** argv) {
   compare("cube 14", box({14, 14, 14}), largest, all);
   compare("cube 20", box({20, 20, 20}), largest, all);
   compare("cube 32", box({32, 32, 32}), largest, all);
+  compare("cube 50", box({50, 50, 50}), largest, all);
+  compare("cube 70", box({70, 70, 70}), largest, all);
   compare("bar 50 x 5 x 5", box({50, 5, 5}), largest, all);
   compare("row 100 x 1 x 1", box({100, 1, 1}), largest, all);
   compare("sheet 20 x 20", sheet(20), largest, all);

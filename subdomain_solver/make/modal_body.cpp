@@ -143,8 +143,9 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
     parts.rung += ", of lumped mass as in the statics before";
   parts.motion = modal_start(initial_motion(spec, place, nodes), constraints.supports,
                              mass_matrix(nodes, form), basis, nodes, *model, parts.rung);
-  parts.scheme =
-      make_scheme(stepped, place, *parts.problem, ports, [&model] { return model->stable_step(); });
+  parts.scheme = make_scheme(
+      stepped, place, *parts.problem, ports, [&model] { return model->stable_step(); },
+      linear_choice(spec.equations));
   parts.reduced = std::move(model);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<ModalReactions>(

@@ -27,6 +27,7 @@ struct SchemeMaker {
   bool joined;  // a port is
   bool alike;   // ... to bodies that integrate alike
   const std::function<double()>& stable_limit;
+  const LinearChoice& linear;
   const MakeWatch& watch;
   const LooseMotions& loose;
 
@@ -81,9 +82,9 @@ struct SchemeMaker {
     return {std::make_unique<QuasiStatic>(
                 problem,
                 QuasiStatic::Options{newton(), s.halvings, loose.motions, held, loose.most, joined},
-                linear(Pivots::with_digits)),
+                linear.make(Pivots::with_digits)),
             s.step, std::numeric_limits<double>::infinity(), MassForm::lumped,
-            fmt::format("quasi-static, step {:g} s{}", s.step,
+            fmt::format("quasi-static, step {:g} s{}{}", s.step, linear.words,
                         held > 0.0 ? fmt::format(", stabilised by {:.4g} N/m as contact alone "
                                                  "holds it",
                                                  held)
@@ -103,16 +104,11 @@ struct SchemeMaker {
     if (joined && weights.gamma > 0.5 && alike) accelerations = Accelerations::steady;
     return {std::make_unique<ImplicitDynamics>(
                 problem, ImplicitDynamics::Options{weights, mass, newton(), accelerations},
-                linear(Pivots::every)),
+                linear.make(Pivots::every)),
             step, std::numeric_limits<double>::infinity(), mass,
-            fmt::format("{}, step {:g} s", words, step)};
+            fmt::format("{}, step {:g} s{}", words, step, linear.words)};
   }
   NewtonOptions newton() const { return {spec.equations.tolerance, spec.equations.max_iterations}; }
-  std::unique_ptr<LinearSolver> linear(Pivots pivots) const {
-    if (const auto* cg = std::get_if<ConjugateGradientsSpec>(&spec.equations.linear))
-      return make_conjugate_gradients(cg->tolerance);
-    return make_direct_solver(pivots);
-  }
 };
 
 }  // namespace
@@ -151,13 +147,15 @@ MassForm mass_form(const BodySpec::Integrator& integrator) {
 SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                                   const std::vector<SolidInterior::PortNodes>& ports,
                                   const std::function<double()>& stable_limit,
-                                  const MakeWatch& watch, const LooseMotions& loose) {
+                                  const LinearChoice& linear, const MakeWatch& watch,
+                                  const LooseMotions& loose) {
   const bool joined = std::ranges::any_of(ports, &SolidInterior::PortNodes::joined);
   const bool alike = std::ranges::all_of(ports, [&spec](const SolidInterior::PortNodes& port) {
     return spec.context.role(port.name).alike;
   });
-  return std::visit(SchemeMaker{spec, place, problem, joined, alike, stable_limit, watch, loose},
-                    *spec.integrator);
+  return std::visit(
+      SchemeMaker{spec, place, problem, joined, alike, stable_limit, linear, watch, loose},
+      *spec.integrator);
 }
 
 }  // namespace abut

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/make/linear_choice.hpp"
 #include "subdomain_solver/make/statics.hpp"
 #include "subdomain_solver/place.hpp"
 #include "subdomain_solver/solid_interior.hpp"
@@ -22,12 +23,13 @@ MassForm mass_form(const BodySpec::Integrator& integrator);
 /// asked of no other scheme. `watch` makes what holds them below their limit while the body
 /// deforms; none: the limit stays. Where a port is joined, schemes take the form in which a force
 /// that is constant in the step does exactly the work by which their energy changes [M.105], if
-/// they have one. `loose` of statics: the rigid motions that supports leave them. The problem must
-/// outlive the scheme. Throws InputError.
+/// they have one. `linear` solves the equations of a step. `loose` of statics: the rigid motions
+/// that supports leave them. The problem must outlive the scheme. Throws InputError.
 using MakeWatch = std::function<std::unique_ptr<FrequencyWatch>()>;
 SolidInterior::Scheme make_scheme(const BodySpec& spec, const Place& place, const Problem& problem,
                                   const std::vector<SolidInterior::PortNodes>& ports,
                                   const std::function<double()>& stable_limit,
-                                  const MakeWatch& watch = {}, const LooseMotions& loose = {});
+                                  const LinearChoice& linear, const MakeWatch& watch = {},
+                                  const LooseMotions& loose = {});
 
 }  // namespace abut

@@ -186,7 +186,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   if (!model.is_linear()) watch = [&] { return std::make_unique<HighestFrequency>(model); };
   BodySpec stepped = spec;
   if (parts.massive_surface) stepped.lump_mass();
-  parts.scheme = make_scheme(stepped, place, *parts.problem, ports, limit, watch, loose);
+  parts.scheme = make_scheme(stepped, place, *parts.problem, ports, limit,
+                             linear_choice(spec.equations, model, held, ports), watch, loose);
   if (!constraints.held.empty()) {
     parts.reactions = std::make_unique<NodalReactions>(
         model, *parts.problem, *parts.scheme.integrator, mass_matrix(model, parts.scheme.mass),

@@ -131,6 +131,10 @@ struct LoadSpec {
 };
 
 /// How nonlinear and linear equations are solved.
+struct AutomaticSpec {
+  static constexpr std::string_view name = "automatic";
+  void fields(Fields&) {}
+};
 struct DirectSpec {
   static constexpr std::string_view name = "direct";
   void fields(Fields&) {}
@@ -143,7 +147,7 @@ struct ConjugateGradientsSpec {
 struct EquationsSpec {
   double tolerance = 1.0e-9;
   int max_iterations = 25;
-  std::variant<DirectSpec, ConjugateGradientsSpec> linear;
+  std::variant<AutomaticSpec, DirectSpec, ConjugateGradientsSpec> linear;
   void fields(Fields& f);
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "subdomain_solver/model.hpp"
 
@@ -30,8 +32,20 @@ enum class Pivots { with_digits, every, definite };
 std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots = Pivots::with_digits);
 /// The same without CHOLMOD in every build: where a step may not allocate.
 std::unique_ptr<LinearSolver> make_own_solver(Pivots pivots = Pivots::with_digits);
-/// Conjugate gradients with incomplete Cholesky factors; for positive definite matrices too large
-/// to factor. `tolerance` is of the residual relative to the right-hand side.
-std::unique_ptr<LinearSolver> make_conjugate_gradients(double tolerance);
+/// Unknowns of a solid in space above which its factors fill the memory (docs/adr/0035).
+constexpr Eigen::Index most_factored = 300'000;
+
+/// What coarser levels of a matrix are made of: motions that cost little energy, rigid ones above
+/// all.
+struct CoarseMotions {
+  std::vector<std::int32_t> nodes;  // (rows) the node of each, ascending from 0 without gaps
+  Eigen::MatrixXd motions;          // (rows, motions)
+};
+
+/// Conjugate gradients, for positive definite matrices too large to factor, with a multigrid cycle
+/// of matrices of as many rows as `motions` has, with incomplete Cholesky factors of others.
+/// `tolerance` is of the residual relative to the right-hand side.
+std::unique_ptr<LinearSolver> make_conjugate_gradients(double tolerance,
+                                                       CoarseMotions motions = {});
 
 }  // namespace abut

@@ -246,7 +246,9 @@ bool ImplicitDynamics::solve_mass(const Vector& force, Vector& acceleration) con
     SparseMatrix free_mass;
     FreeCoordinates(problem_.model->dofs(), problem_.supports, layer_.dofs())
         .extract(mass_, free_mass);
-    mass_solver_ = make_direct_solver();
+    // A mass matrix is never far from its diagonal: some twenty iterations.
+    mass_solver_ = free_mass.rows() > most_factored ? make_conjugate_gradients(1.0e-14)
+                                                    : make_direct_solver();
     if (!mass_solver_->factor(free_mass)) return false;
   }
   inertial_.pick(force, of_mass_.force);
