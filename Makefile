@@ -61,9 +61,10 @@ demo: dependencies-build
 	@$(BIN)/abut report runs/two_bars >/dev/null
 	@echo "page   file://$(CURDIR)/runs/two_bars/report.html"
 
+# One more at once than there are processors: some tests wait most of their time.
 test: dependencies-test
 	@sh scripts/build.sh tests
-	ctest --preset $(PRESET) --parallel 2 $(TESTS)
+	ctest --preset $(PRESET) --parallel $$(($$(nproc) + 1)) $(TESTS)
 
 SECONDS ?= 600
 fuzz: dependencies-test

@@ -18,7 +18,7 @@ from pathlib import Path
 
 GROWTH = 0.01  # of the resident memory of any process
 DRIFT = 1.0e-9  # [m/s] of the block that rests; its pressure makes a wave of 1 m/s
-EXCHANGES_PER_WINDOW = 25.0  # of the box, measured: for how long it runs
+EXCHANGES_PER_WINDOW = 16.0  # of the box, measured: for how long it runs
 
 BOX = """\
 meta: {title: Sixty disks in a box that is shaken}
