@@ -32,9 +32,7 @@ class FeModel final : public Model {
   std::size_t history_size() const override { return history_size_; }
   const SparseMatrix& mass() const override;
   const Vector& lumped_mass() const override { return lumped_; }
-  WorkerThreads* threads() override {
-    return batched_ || !is_linear() ? &answers_->threads() : nullptr;
-  }
+  WorkerThreads* threads() override { return &answers_->threads(); }
   double roundoff(std::span<const double> q) const override;
   [[nodiscard]] bool evaluate(std::span<const double> q, std::span<const double> history, Want want,
                               ModelResponse& out) override;

@@ -72,7 +72,8 @@ void FiniteElementsSpec::fields(Fields& f) {
 
 void FeModelSpec::fields(Fields& f) {
   FiniteElementsSpec::fields(f);
-  f.optional("threads", threads, "", "number of threads that compute its elements",
+  f.optional("threads", threads, "",
+             "number of threads that compute its elements and factor its matrices",
              between(1, 256));
 }
 

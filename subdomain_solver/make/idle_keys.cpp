@@ -105,12 +105,8 @@ void BodySpec::idle_of_bars(Fields& f) const {
 void BodySpec::idle_of_integrators(Fields& f) const {
   const FeModelSpec* fe = std::get_if<FeModelSpec>(&model);
   const bool explicit_in_time = integrates(SchemeKind::explicit_steps);
-  const bool linear = material && std::holds_alternative<LinearElasticSpec>(*material);
-  f.idle(fe != nullptr && integrator &&
-             ((!explicit_in_time && linear) || !is_solid() || fe->dimension == 1),
-         "model.fe.threads",
-         "it is for bodies in two and three dimensions, of explicit steps or of other laws than "
-         "linear_elastic");
+  f.idle(fe != nullptr && integrator && (!is_solid() || fe->dimension == 1), "model.fe.threads",
+         "it is for bodies in two and three dimensions");
   f.idle(fe != nullptr && explicit_in_time, "equations", "an explicit body solves none");
   const bool still = integrates(SchemeKind::statics);
   all_idle(f, still, {"initial.velocity", "initial.velocity_field"},

@@ -34,8 +34,9 @@ CoarseMotions coarse_motions(const FeModel& model, const std::vector<int>& held)
 
 namespace {
 
-LinearChoice direct() {
-  return {[](Pivots pivots) { return make_direct_solver(pivots); }, ""};
+/// `threads` may be null.
+LinearChoice direct(WorkerThreads* threads) {
+  return {[threads](Pivots pivots) { return make_direct_solver(pivots, threads); }, ""};
 }
 
 LinearChoice iterated(double tolerance, std::function<CoarseMotions()> motions) {
@@ -59,17 +60,16 @@ bool is_large(const FeModel& model, const std::vector<int>& held,
 LinearChoice linear_choice(const EquationsSpec& spec) {
   if (const auto* chosen = std::get_if<ConjugateGradientsSpec>(&spec.linear))
     return iterated(chosen->tolerance, [] { return CoarseMotions(); });
-  return direct();
+  return direct(nullptr);
 }
 
-LinearChoice linear_choice(const EquationsSpec& spec, const FeModel& model,
-                           const std::vector<int>& held,
+LinearChoice linear_choice(const EquationsSpec& spec, FeModel& model, const std::vector<int>& held,
                            const std::vector<SolidInterior::PortNodes>& ports) {
   const auto motions = [&model, held] { return coarse_motions(model, held); };
   if (const auto* chosen = std::get_if<ConjugateGradientsSpec>(&spec.linear))
     return iterated(chosen->tolerance, motions);
   const bool factors = std::holds_alternative<DirectSpec>(spec.linear);
-  if (factors || !is_large(model, held, ports)) return direct();
+  if (factors || !is_large(model, held, ports)) return direct(model.threads());
   return iterated(ConjugateGradientsSpec().tolerance, motions);
 }
 

@@ -23,8 +23,7 @@ struct LinearChoice {
 /// beyond. Where others touch the body or are joined to it, every coordinate of its ports takes a
 /// solution: factors serve them all, and are kept up to twice as many unknowns. `held`: coordinates
 /// that supports prescribe, ascending. The model must outlive what is made.
-LinearChoice linear_choice(const EquationsSpec& spec, const FeModel& model,
-                           const std::vector<int>& held,
+LinearChoice linear_choice(const EquationsSpec& spec, FeModel& model, const std::vector<int>& held,
                            const std::vector<SolidInterior::PortNodes>& ports);
 
 /// The same of a model without a mesh, as one of modes.

@@ -119,12 +119,6 @@ std::string pressed_in_words(double over, bool statics) {
                      statics ? "or at once where it goes passively" : "without a passive form");
 }
 
-void check_threads(const FeModelSpec& fe, FeModel& model, const Place& place) {
-  if (fe.threads <= 1 || model.threads() != nullptr) return;
-  throw InputError("have no effect: forces of this law on these elements are those of one matrix",
-                   place.where("model.fe.threads"), "Leave threads out.");
-}
-
 }  // namespace
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
@@ -150,7 +144,6 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
                                           constraints.frames);
   FeModel& model = *parts.model;
   check_mass(model.lumped_mass().minCoeff(), model.lumped_mass().maxCoeff(), spec, place);
-  check_threads(fe, model, place);
   std::vector<int> layer = layer_coordinates(model, spec, ports, constraints, place);
   std::vector<int> held;  // coordinates, ascending
   for (const Prescribed& p : constraints.supports) held.push_back(p.dof);

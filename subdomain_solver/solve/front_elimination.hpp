@@ -17,18 +17,30 @@ struct DenseView {
 constexpr std::size_t packed_strip = 32'768, packed_rows = 4'096;
 
 /// Numbers that an elimination works with beside a front of so many rows and columns.
-constexpr std::size_t elimination_space(std::size_t rows, std::size_t columns) {
-  return rows * columns + packed_strip + packed_rows;
+constexpr std::size_t elimination_space(std::size_t rows, std::size_t columns,
+                                        std::size_t workers = 1) {
+  return rows * columns + workers * (packed_strip + packed_rows);
 }
+
+/// Who shares the work of an elimination; alone by default. Plain pointers: inline code of others
+/// must not be compiled for the registers of one machine.
+struct Team {
+  using Work = void(const void* argument, std::size_t task, int worker);
+  void* self = nullptr;
+  int workers = 1;
+  /// work(argument, task, worker) for every task below `tasks`.
+  void (*run)(void* self, std::size_t tasks, Work* work, const void* argument) = nullptr;
+};
 
 /// Eliminates the columns of a front by L D L^T without exchanges: `block` (rows, columns) becomes
 /// the unit lower trapezoid L with D on its diagonal, and L D L^T of the rows below its columns is
 /// taken from the lower half of `rest` (rows - columns, squared). What stands above the diagonals
-/// is undefined. False: a pivot is nothing, or not a number.
+/// is undefined. `space`: as elimination_space of as many workers. False: a pivot is nothing, or
+/// not a number.
 ///
-/// The same source for every width of registers; all give the same bits, as every entry loses its
-/// products one by one in their order.
-using Eliminate = bool(DenseView block, DenseView rest, double* space);
+/// The same source for every width of registers; all give the same bits, whoever works, as every
+/// entry loses its products one by one in their order.
+using Eliminate = bool(DenseView block, DenseView rest, double* space, const Team& team);
 Eliminate eliminate_generic, eliminate_avx2, eliminate_avx512;
 
 /// That of this machine.

@@ -74,13 +74,14 @@ constexpr Eigen::Index large = 1000;
 /// Chosen by the first matrix, as all are of one pattern.
 class BySize final : public LinearSolver {
  public:
-  explicit BySize(Pivots pivots) : pivots_(pivots) {}
+  explicit BySize(Pivots pivots, WorkerThreads* threads = nullptr)
+      : pivots_(pivots), threads_(threads) {}
 
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
     if (chosen_ == nullptr && matrix.rows() < large)
       chosen_ = std::make_unique<Ldlt>(pivots_);
     else if (chosen_ == nullptr)
-      chosen_ = make_multifrontal_solver(pivots_);
+      chosen_ = make_multifrontal_solver(pivots_, threads_);
     return chosen_->factor(matrix);
   }
   [[nodiscard]] bool solve(const Vector& b, Vector& x) override { return chosen_->solve(b, x); }
@@ -92,6 +93,7 @@ class BySize final : public LinearSolver {
 
  private:
   Pivots pivots_;
+  WorkerThreads* threads_;
   std::unique_ptr<LinearSolver> chosen_;
 };
 
@@ -99,8 +101,8 @@ class BySize final : public LinearSolver {
 /// is not, and another solver takes over.
 class FirstThatFactors final : public LinearSolver {
  public:
-  FirstThatFactors(std::unique_ptr<LinearSolver> quick, Pivots pivots)
-      : quick_(std::move(quick)), general_(pivots) {}
+  FirstThatFactors(std::unique_ptr<LinearSolver> quick, Pivots pivots, WorkerThreads* threads)
+      : quick_(std::move(quick)), general_(pivots, threads) {}
 
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
     definite_ = quick_->factor(matrix);
@@ -135,10 +137,10 @@ std::unique_ptr<LinearSolver> make_own_solver(Pivots pivots) {
   return std::make_unique<BySize>(pivots);
 }
 
-std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots) {
+std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots, WorkerThreads* threads) {
   if (std::unique_ptr<LinearSolver> quick = make_cholmod_solver(pivots); quick != nullptr)
-    return std::make_unique<FirstThatFactors>(std::move(quick), pivots);
-  return make_own_solver(pivots);
+    return std::make_unique<FirstThatFactors>(std::move(quick), pivots, threads);
+  return std::make_unique<BySize>(pivots, threads);
 }
 
 }  // namespace abut

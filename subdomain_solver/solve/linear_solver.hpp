@@ -29,7 +29,9 @@ enum class Pivots { with_digits, every, definite };
 
 /// Direct: L D L^T, by Eigen of small matrices and by fronts of others (docs/adr/0035); by CHOLMOD
 /// when the build has it and the matrix is positive definite.
-std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots = Pivots::with_digits);
+/// `threads` share large fronts, and must outlive the solver; null: alone. Bits are the same.
+std::unique_ptr<LinearSolver> make_direct_solver(Pivots pivots = Pivots::with_digits,
+                                                 WorkerThreads* threads = nullptr);
 /// The same without CHOLMOD in every build: where a step may not allocate.
 std::unique_ptr<LinearSolver> make_own_solver(Pivots pivots = Pivots::with_digits);
 /// Unknowns of a solid in space above which its factors fill the memory (docs/adr/0035).

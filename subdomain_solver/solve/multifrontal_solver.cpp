@@ -36,7 +36,9 @@ DenseView block_view(Block& of) { return {of.data(), of.rows(), of.cols(), of.ro
 
 class Multifrontal final : public LinearSolver {
  public:
-  explicit Multifrontal(Pivots pivots) : pivots_(pivots) {}
+  Multifrontal(Pivots pivots, WorkerThreads* threads) : pivots_(pivots) {
+    if (threads != nullptr && threads->count() > 1) team_ = {threads, threads->count(), run};
+  }
 
   [[nodiscard]] bool factor(const SparseMatrix& matrix) override {
     if (entries_ < 0) analyse(matrix);
@@ -65,6 +67,10 @@ class Multifrontal final : public LinearSolver {
   }
 
  private:
+  static void run(void* self, std::size_t tasks, Team::Work* work, const void* argument) {
+    static_cast<WorkerThreads*>(self)->run(
+        tasks, [work, argument](std::size_t task, int worker) { work(argument, task, worker); });
+  }
   void analyse(const SparseMatrix& matrix) {
     ABUT_ASSERT(matrix.isCompressed());
     entries_ = matrix.nonZeros();
@@ -72,7 +78,7 @@ class Multifrontal final : public LinearSolver {
     values_.resize(fronts_.values);
     stack_.resize(fronts_.stack);
     rest_.resize(fronts_.largest_rest);
-    space_.resize(fronts_.space);
+    space_.resize(fronts_.space + elimination_space(0, 0, index(team_.workers - 1)));
     find_places(matrix);
   }
 
@@ -107,7 +113,7 @@ class Multifrontal final : public LinearSolver {
       top -= index(from.rest()) * index(from.rest());
       add(from, stack_.data() + top, block, rest);
     }
-    if (!eliminate_(block_view(block), block_view(rest), space_.data())) return false;
+    if (!eliminate_(block_view(block), block_view(rest), space_.data(), team_)) return false;
     if (front.rest() == 0) return true;
     waiting_.push_back(&front);
     std::ranges::copy_n(rest_.data(), rest.size(), stack_.data() + top);
@@ -187,6 +193,7 @@ class Multifrontal final : public LinearSolver {
   }
 
   Pivots pivots_;
+  Team team_;
   Fronts fronts_;
   Eigen::Index entries_ = -1;    // of the matrix
   std::vector<int> from_;        // of its lower half, in the order of elimination
@@ -205,8 +212,8 @@ class Multifrontal final : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_multifrontal_solver(Pivots pivots) {
-  return std::make_unique<Multifrontal>(pivots);
+std::unique_ptr<LinearSolver> make_multifrontal_solver(Pivots pivots, WorkerThreads* threads) {
+  return std::make_unique<Multifrontal>(pivots, threads);
 }
 
 }  // namespace abut

@@ -194,29 +194,52 @@ TEST(Fronts, SolveManyRightSidesToTheBitsOfEach) {
 struct TestFront {
   static constexpr std::ptrdiff_t rows = 421, columns = 303, rest = rows - columns;
   std::vector<double> block, left, space;
-  TestFront() : block(rows * columns), left(rest * rest), space(elimination_space(rows, columns)) {
+  explicit TestFront(std::size_t workers = 1)
+      : block(rows * columns), left(rest * rest), space(elimination_space(rows, columns, workers)) {
     for (std::size_t k = 0; k < block.size(); ++k)
       block[k] = std::sin(0.7 * static_cast<double>(k));
     for (std::ptrdiff_t j = 0; j < columns; ++j)
       block[index(j * (rows + 1))] = j % 2 == 0 ? 500.0 : -500.0;
     for (std::size_t k = 0; k < left.size(); ++k) left[k] = std::cos(0.3 * static_cast<double>(k));
   }
-  bool eliminate_by(Eliminate& by) {
-    return by({block.data(), rows, columns, rows}, {left.data(), rest, rest, rest}, space.data());
+  bool eliminate_by(Eliminate& by, const Team& team = {}) {
+    return by({block.data(), rows, columns, rows}, {left.data(), rest, rest, rest}, space.data(),
+              team);
   }
 };
+
+/// What a front becomes is the same.
+void expect_same(const TestFront& one, const TestFront& other) {
+  using Front = TestFront;
+  for (std::ptrdiff_t j = 0; j < Front::columns; ++j)
+    for (std::ptrdiff_t i = j; i < Front::rows; ++i)
+      ASSERT_EQ(one.block[index(i + j * Front::rows)], other.block[index(i + j * Front::rows)]);
+  for (std::ptrdiff_t j = 0; j < Front::rest; ++j)
+    for (std::ptrdiff_t i = j; i < Front::rest; ++i)
+      ASSERT_EQ(one.left[index(i + j * Front::rest)], other.left[index(i + j * Front::rest)]);
+}
 
 TEST(Fronts, HaveTheSameBitsForEveryWidthOfRegisters) {
   TestFront generic, here;
   ASSERT_TRUE(generic.eliminate_by(eliminate_generic));
   ASSERT_TRUE(here.eliminate_by(eliminate_here()));
-  using Front = TestFront;
-  for (std::ptrdiff_t j = 0; j < Front::columns; ++j)
-    for (std::ptrdiff_t i = j; i < Front::rows; ++i)
-      ASSERT_EQ(generic.block[index(i + j * Front::rows)], here.block[index(i + j * Front::rows)]);
-  for (std::ptrdiff_t j = 0; j < Front::rest; ++j)
-    for (std::ptrdiff_t i = j; i < Front::rest; ++i)
-      ASSERT_EQ(generic.left[index(i + j * Front::rest)], here.left[index(i + j * Front::rest)]);
+  expect_same(generic, here);
+}
+
+/// Of a solid whose separators are fronts of some hundred columns, which threads share.
+TEST(Fronts, HaveTheSameBitsForEveryNumberOfThreads) {
+  SparseMatrix k = free_stiffness("hex8", {13, 13, 13});
+  k.diagonal().array() += 0.01;
+  const Vector b = Vector::LinSpaced(k.rows(), -1.0, 2.0);
+  Vector alone, shared;
+  const auto solver = make_multifrontal_solver(Pivots::definite);
+  ASSERT_TRUE(solver->factor(k) && solver->solve(b, alone));
+  for (const int count : {2, 3}) {
+    WorkerThreads threads(count);
+    const auto other = make_multifrontal_solver(Pivots::definite, &threads);
+    ASSERT_TRUE(other->factor(k) && other->solve(b, shared));
+    EXPECT_EQ(alone, shared) << count;
+  }
 }
 
 /// Widths differ in how many rows they pack, and all must be content with the same room.

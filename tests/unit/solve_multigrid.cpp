@@ -159,7 +159,7 @@ TEST(LinearChoice, IteratesWhereFactorsWouldFillTheMemory) {
   const EquationsSpec automatic;
   const System small = system_of(sheet(3), {}, "left");
   EXPECT_EQ(linear_choice(automatic, *small.model, small.held, {}).words, "");
-  const FeModel large(cube(47), std::make_unique<LinearElastic>(Moduli{1.25, 0.5}, 1.0), {});
+  FeModel large(cube(47), std::make_unique<LinearElastic>(Moduli{1.25, 0.5}, 1.0), {});
   EXPECT_EQ(linear_choice(automatic, large, {}, {}).words, ", by conjugate gradients");
   SolidInterior::PortNodes port;
   port.touched = true;

@@ -125,7 +125,6 @@ const std::vector<Idle> table = {
       "integrator.central_difference.dispersion_terms=2",
       "integrator.central_difference.bulk_viscosity=0.1",
       "integrator.central_difference.tchamwa=1.1", "ports={p: {side: left, tied: false}}"}},
-    {"implicit linear solid", {"model.fe.threads=1", "model.fe.threads=2"}},
     {"static solid", {"initial.velocity=[1, 0, 0]", "initial.velocity_field=[x, 0, 0]"}},
     {"axisymmetric", {"model.fe.thickness=2"}},
     {"modal", {"equations.tolerance=1e-6", "model.modal.hourglass=0.1", "contact_layer=kick"}},
