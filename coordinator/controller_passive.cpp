@@ -284,6 +284,7 @@ GivenUp Controller::given_up() const {
           .unsettled = passive.unsettled,
           .unbalanced = passive.unbalanced,
           .normal = passive.normal,
+          .impacts = passive.impacts,
           .friction = passive.friction,
           .damped = passive.damped,
           .switched = passive.switched,

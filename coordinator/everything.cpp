@@ -83,6 +83,22 @@ void require_friction(const ContactSpec& law, std::span<const Description* const
   }
 }
 
+void require_rigid(const ContactSpec& law, std::span<const Description* const> bodies,
+                   const Document& document) {
+  if (!law.restitution) return;
+  int rigid = 0;
+  for (const Description* body : bodies) {
+    if (body == nullptr) return;
+    const bool stiff = std::ranges::any_of(body->ports, [](const Port& port) {
+      return port.geometry.dim > 1 && !(port.geometry.transit > 0.0);
+    });
+    if (stiff) ++rigid;
+  }
+  if (rigid > 1) return;
+  throw InputError("has no effect: no two bodies are rigid, and what deforms bounces by itself",
+                   document.where(std::string(everything_path) + ".restitution"), "Leave it out.");
+}
+
 /// Surfaces of one kind: flat ones beside rings only where nothing moves them.
 void require_one_kind(std::span<const Description* const> bodies, const Document& document) {
   const Description* first = nullptr;
@@ -149,6 +165,7 @@ void validate_everything(const Scene& scene, std::span<const Description* const>
     if (body != nullptr) errors.gather([&] { validate_body(*body, document); });
   errors.gather([&] { require_finders(bodies, document); });
   errors.gather([&] { require_friction(*scene.everything(), bodies, document); });
+  errors.gather([&] { require_rigid(*scene.everything(), bodies, document); });
   errors.gather([&] { require_one_kind(bodies, document); });
   errors.raise();
 }

@@ -52,6 +52,10 @@ void ContactSpec::fields(Fields& f) {
       "comparisons, at each node of the side that finds contact, which no constant pressure "
       "passes");
   friction_keys(f, friction);
+  f.optional("restitution", restitution, "",
+             "part of the speed at which rigid bodies meet that they part with: from 0, which is "
+             "usual, to 1, which keeps the energy; what deforms bounces by itself",
+             between(0.0, 1.0));
 }
 
 void OverlapSpec::fields(Fields& f) {

@@ -15,8 +15,9 @@ namespace abut {
 // exchange.
 
 struct ContactSpec {
-  bool points = false;   // "rows: mortar | point_to_surface"
-  FrictionLaw friction;  // of surfaces
+  bool points = false;                // "rows: mortar | point_to_surface"
+  FrictionLaw friction;               // of surfaces
+  std::optional<double> restitution;  // of rigid bodies; absent: none
   void fields(Fields& f);
 };
 /// Coulomb's coefficient of what slides: the only one of the passive way [M.132].
@@ -41,8 +42,8 @@ struct OverlapSpec {
   bool unstable = false;     // motions alone where they are known to gain energy
   void fields(Fields& f);
 };
-struct TiedSpec {  // joined from the start, for the whole run
-  bool finer = false;  // "steps: coarser | finer"
+struct TiedSpec {                      // joined from the start, for the whole run
+  bool finer = false;                  // "steps: coarser | finer"
   std::optional<OverlapSpec> overlap;  // absent: their sides meet
   void fields(Fields& f);
 };

@@ -58,6 +58,17 @@ void validate_geometry(const InterfaceSpec& interface, const Scene& scene,
   if (ports[0]->dim != ports[1]->dim)
     throw InputError(fmt::format("join a port in {}D and one in {}D", ports[0]->dim, ports[1]->dim),
                      document.where(path), "Give both bodies the same dimension.");
+  if (interface.contact && interface.contact->restitution) {
+    const bool line = ports[0]->dim == 1;
+    const std::size_t soft = !line && ports[0]->transit > 0.0 ? 0 : 1;
+    if (line || ports[soft]->transit > 0.0)
+      throw InputError(
+          line ? std::string("has no effect: bars and walls on a line bounce by themselves")
+               : fmt::format("has no effect: {} deforms, and bounces by itself",
+                             split_port(interface.sides[soft]).body),
+          document.where(fmt::format("interfaces.{}.contact.restitution", interface.name)),
+          "Leave it out; it is for two bodies that are rigid or tools.");
+  }
   if (ports[0]->dim != 1) return;
   if (interface.contact && interface.contact->points)  // a resolved scene names the default
     throw InputError("has no effect: ends of bars are points",

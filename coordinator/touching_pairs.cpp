@@ -61,7 +61,7 @@ void add_everything(const ContactSpec& law, std::span<const Joint> joints, const
                (is(pair.sides[1], one) && is(pair.sides[0], other));
       });
       if (wholes[index(one.body)] != wholes[index(other.body)] && !stand && !written)
-        pairs.push_back({{one, other}, sliding(law)});
+        pairs.push_back({{one, other}, sliding(law), law.restitution.value_or(0.0)});
     }
   }
 }
@@ -119,7 +119,8 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
   for (const Joint& joint : joints) {
     if (joint.exchange == nullptr || joint.tied()) continue;
     const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
-    pairs.push_back({joint.sides, spec.contact ? sliding(*spec.contact) : 0.0});
+    const ContactSpec law = spec.contact.value_or(ContactSpec());
+    pairs.push_back({joint.sides, sliding(law), law.restitution.value_or(0.0)});
   }
   if (scene.everything() != nullptr) add_everything(*scene.everything(), joints, bodies, pairs);
   if (const std::optional<double> friction = scene.own_friction())

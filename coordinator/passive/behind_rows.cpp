@@ -88,8 +88,7 @@ bool BehindRows::holds(const FeaturePair& pair) const {
   if (behind_.empty()) return false;
   const auto& p = pair.points;
   const std::vector<std::int32_t>& group = surfaces_.skin().group;
-  if (pair.kind == FeatureKind::node_facet)
-    return known({p[0], -1}, group[index(p[1])]) != nullptr;
+  if (pair.kind == FeatureKind::node_facet) return known({p[0], -1}, group[index(p[1])]) != nullptr;
   return leaves_out({p[0], p[1]}, group[index(p[2])]) ||
          leaves_out({p[2], p[3]}, group[index(p[0])]);
 }
@@ -142,8 +141,9 @@ bool BehindRows::is_rim(const SkinTrees& trees, const Places& places, const Edge
                         const Eigen::Vector3d& at) const {
   const std::int32_t facet = trees.closest_facet(surfaces_.skin().group[index(edge[0])], places, at,
                                                  surfaces_.shortest_edge());
-  return facet >= 0 && sides_.facet_normal(places, facet)
-                               .dot(sides_.edge_normal(places, edge[0], edge[1])) < half_a_rim;
+  return facet >= 0 &&
+         sides_.facet_normal(places, facet).dot(sides_.edge_normal(places, edge[0], edge[1])) <
+             half_a_rim;
 }
 
 // ---- what is behind -----------------------------------------------------------------------------
@@ -262,9 +262,8 @@ void BehindRows::accept(SkinTrees& trees, const Places& places) {
   if (behind_.empty()) return;
   const Skin& skin = surfaces_.skin();
   keep_one_each(beside_, &Behind::key);
-  std::erase_if(beside_, [this](const Behind& each) {
-    return known(each.points, each.group) != nullptr;
-  });
+  std::erase_if(beside_,
+                [this](const Behind& each) { return known(each.points, each.group) != nullptr; });
   behind_.insert(behind_.end(), beside_.begin(), beside_.end());
   beside_.clear();
   take(std::move(behind_));

@@ -69,8 +69,8 @@ class BehindRows {
   const Behind* known(std::array<std::int32_t, 2> points, std::int32_t group) const;
   bool leaves_out(std::array<std::int32_t, 2> edge, std::int32_t group) const;
   bool passes_outside(const SkinTrees& trees, const FeaturePair& pair, const Places& places) const;
-  bool is_rim(const SkinTrees& trees, const Places& places,
-              const std::array<std::int32_t, 2>& edge, const Eigen::Vector3d& at) const;
+  bool is_rim(const SkinTrees& trees, const Places& places, const std::array<std::int32_t, 2>& edge,
+              const Eigen::Vector3d& at) const;
   SignedSide side_of(const SkinTrees& trees, const Places& places, const Eigen::Vector3d& x,
                      std::int32_t group) const;
   SignedSide side_of(const SkinTrees& trees, const Places& places, const Behind& what) const;

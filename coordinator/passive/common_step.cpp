@@ -74,6 +74,7 @@ CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near,
       statics_(statics),
       ties_(std::move(ties), bodies),
       points_(surfaces, owners_of(ties_, bodies.count())),
+      impacts_(surfaces, bodies),
       asked_(index(bodies.count())),
       tried_(index(bodies.count())),
       replies_(index(bodies.count())),
@@ -90,6 +91,7 @@ std::optional<Failed> CommonStep::begin(double time) {
   rows_.clear();
   warm_.clear();
   owed_.clear();
+  impacts_.clear();
   points_.clear();
   std::ranges::fill(advanced_, 0);
   if (std::optional<Failed> failed = advance(true)) return failed;
@@ -130,11 +132,13 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   points_.clear();
   prepared_ = 0;
   softer_ = 0;
-  released_ = 0.0;
+  released_ = returned_ = 0.0;
   culprit_ = -1;
   std::ranges::fill(advanced_, 0);
+  see_start();
   credit_ = statics_ ? without_account : 0.5 * ledger.normal;
   const double budget = credit_ - ledger.push_out;
+  lost_ = std::max(0.0, ledger.normal - ledger.push_out);
   pushing_ = budget > 0.0;
   allowed_ = paid_share * std::max(0.0, budget);
   unclaimed_ = affordable(owed_, ledger.normal - ledger.push_out);
@@ -148,6 +152,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   }
   see_velocities();
   near_.find_on_ways(from_, to_, rows_);
+  impacts_.aim(rows_, start_, velocities_);
   if (std::optional<Refusal> refused = iterate()) return refused;
   return accept(lenient, ledger);
 }
@@ -189,8 +194,7 @@ double CommonStep::farthest() const {
   return most;
 }
 
-bool CommonStep::settle(double begin, double end, int looser, bool lenient,
-                        PassiveLedger& ledger) {
+bool CommonStep::settle(double begin, double end, int looser, bool lenient, PassiveLedger& ledger) {
   std::vector<DistanceRow> rows = rows_;
   looser_ = looser;
   const bool taken = !take(begin, end, lenient, ledger);
@@ -375,15 +379,18 @@ void CommonStep::rows_ask(double& unfit, double& work) const {
         work += row.tangential_impulse[t] * row_velocity(row, velocities_, static_cast<int>(t) + 1);
     const double over = (w - row.least()) * length();
     unfit = std::max(unfit, -over);
-    if (row.normal_impulse > no_impulse * largest) unfit = std::max(unfit, 0.1 * std::abs(over));
+    const bool pulls = row.aimed && row.normal_impulse > -row.pushed;
+    if (pulls || row.normal_impulse > no_impulse * largest)
+      unfit = std::max(unfit, 0.1 * std::abs(over));
   }
 }
 
 /// [J] of contact in the step: push-out's part, or, where rows give back what they took, no more
 /// than all that is lost.
 double CommonStep::most_work() const {
-  return released_ > 0.0 ? std::min(allowed_ + released_, credit_ + allowed_ / paid_share)
-                         : allowed_;
+  const double normal =
+      released_ > 0.0 ? std::min(allowed_ + released_, credit_ + allowed_ / paid_share) : allowed_;
+  return normal + returned_;
 }
 
 /// The bodies answered under the impulses of so many of the rows.
@@ -397,14 +404,18 @@ void CommonStep::solve_rows(std::size_t answered) {
   solver.press_from(answered);
   solver.solve(still);
   released_ = solver.release(still);
+  if (const double parted = solver.parted(); parted > 0.0)
+    released_ = std::min(released_ + parted, lost_);
   const double there = credit_ + allowed_ / paid_share;  // [J] of normal contact, while pushing
-  const bool dear = solver.work() > allowed_ + released_ + rounding || allowed_ + released_ > there;
+  returned_ = solver.returned();
+  const bool dear =
+      solver.work() - returned_ > allowed_ + released_ + rounding || allowed_ + released_ > there;
   if (pushing_ && dear) {
     pushing_ = false;
     for (DistanceRow& row : rows_) row.closing = std::max(row.closing, 0.0), row.push = 0.0;
     solver.solve(still);
   }
-  const double most = (pushing_ ? allowed_ : 0.0) + released_;
+  const double most = (pushing_ ? allowed_ : 0.0) + released_ + returned_;
   if (solver.work() > most + rounding) solver.limit(most);
   for (DistanceRow& row : rows_)
     if (row.recoils) row.push = solver.velocity(row);
@@ -452,6 +463,7 @@ void CommonStep::follow_ties() {
 
 void CommonStep::state(Archive& archive) {
   archive.field("energies", energies_);
+  impacts_.state(archive);
   archive.field("accounts", accounts_);
   archive.field("most", most_);
   field(archive, "places", from_);

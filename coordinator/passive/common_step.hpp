@@ -9,6 +9,7 @@
 #include "coordinator/passive/near_rows.hpp"
 #include "coordinator/passive/passive_ledger.hpp"
 #include "coordinator/passive/passive_ties.hpp"
+#include "coordinator/passive/rigid_impacts.hpp"
 #include "coordinator/passive/row_impulses.hpp"
 
 namespace abut {
@@ -90,11 +91,13 @@ class CommonStep {
   void rows_ask(double& unfit, double& work) const;
   void solve_rows(std::size_t answered);
   std::optional<Refusal> accept(bool lenient, PassiveLedger& ledger);
+  void see_start();
+  double heat_of(const DistanceRow& row) const;
+  double speed_of_loads(const DistanceRow& row) const;
   void share_out_work();
   void share_out_ties();
   void count_normal(const DistanceRow& row, PassiveLedger& ledger);
-  bool gives_back(const DistanceRow& row) const;
-  bool is_blow(const DistanceRow& row) const;
+  bool is_blow(const DistanceRow& row, double& approach) const;
   void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
   static double own_energy(const BodyRecord& record);              // [J] of a body
@@ -114,23 +117,26 @@ class CommonStep {
   std::vector<PassiveReply> tried_, replies_;                    // by body
   std::vector<std::vector<std::vector<double>>> displacements_;  // [m] by body and port
   std::vector<char> advanced_;                                   // (bodies) since they were saved
-  Places from_, to_, velocities_;                                // (points)
+  Places from_, to_, velocities_, start_;  // (points); velocities in the step, and at its begin
   std::vector<DistanceRow> rows_;
   std::size_t prepared_ = 0;  // rows that were given their targets
   bool pushing_ = false;
   double allowed_ = 0.0;                              // [J] that contact may do in the step
+  double lost_ = 0.0;                                 // [J] by normal contact so far
   double released_ = 0.0;                             // [J] beside, by rows that part
+  double returned_ = 0.0;                             // [J] and by friction that took too much
   int softer_ = 0;                                    // solves of these rows so far
   int looser_ = 0;                                    // than in a first step bodies are held
   double fine_ = 1.0;                                 // times what fits, in this step
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
   std::map<std::int32_t, double> owed_;               // [J] to rows, by their first points
   std::map<std::int32_t, double> unclaimed_;          // of it, by no row of this step yet
-  std::vector<double> energies_;                      // [J] by body
-  std::vector<double> accounts_;                      // [J] by body that nothing explains
-  std::vector<std::vector<double>> port_work_;        // [J] by body and port
-  double most_ = 0.0;                                 // [J] largest kinetic and stored energy
-  double credit_ = 0.0;                               // [J] half of what normal contact has lost
+  RigidImpacts impacts_;
+  std::vector<double> energies_;                // [J] by body
+  std::vector<double> accounts_;                // [J] by body that nothing explains
+  std::vector<std::vector<double>> port_work_;  // [J] by body and port
+  double most_ = 0.0;                           // [J] largest kinetic and stored energy
+  double credit_ = 0.0;                         // [J] half of what normal contact has lost
   std::string why_;
   int culprit_ = -1;
 };

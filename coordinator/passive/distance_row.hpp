@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -32,6 +33,13 @@ struct DistanceRow {
   double push = 0.0;     // [m/s] of it, that parts what is too near
   double owed = 0.0;     // [J] that its normal impulses took and that it gives back as it parts
   bool recoils = false;  // it does so in this step, at w = push
+  // Of rigid sides in an impact [M.161]: it has this mean velocity after the step, by an impulse of
+  // at least -pushed, so that they part with so much.
+  bool aimed = false;
+  double aim = 0.0, parting = 0.0;  // [m/s]
+  double pushed = 0.0;              // [N s]
+  std::array<double, 2> rubbed{};   // [N s] along the tangents, by friction with that
+  double heat = 0.0;                // [J] that it took
   double normal_impulse = 0.0;
   std::array<double, 2> tangential_impulse{};
 
@@ -40,7 +48,9 @@ struct DistanceRow {
     return features.points[side == 0 ? 0 : index(features.first_side())];
   }
   /// [m/s] what w is to be at least.
-  double least() const { return recoils ? push : -closing; }
+  double least() const { return recoils ? push : held(); }
+  /// [m/s] the same of a row that gives nothing back.
+  double held() const { return aimed ? std::max(aim, -closing) : -closing; }
   Eigen::Vector3d impulse() const {
     return normal_impulse * normal + tangential_impulse[0] * tangents[0] +
            tangential_impulse[1] * tangents[1];

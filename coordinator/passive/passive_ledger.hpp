@@ -14,6 +14,7 @@ namespace abut {
 /// What passive steps have taken from the bodies, and what they had to do for it.
 struct PassiveLedger {
   double normal = 0.0;    // [J] lost in normal contact
+  double impacts = 0.0;   // [J] of it between rigid bodies, as restitution has it
   double friction = 0.0;  // [J] by friction, which is physics
   double push_out = 0.0;  // [J] given to part what was too near, out of what normal contact lost
   double damped = 0.0;    // [J] taken back from bodies that gained, or held rigid for an instant
@@ -54,6 +55,7 @@ struct PassiveLedger {
     });
     rubbed = {pairs.begin(), pairs.end()};
     archive.field("normal", normal);
+    archive.field("impacts", impacts);
     archive.field("friction", friction);
     archive.field("push_out", push_out);
     archive.field("damped", damped);

@@ -120,8 +120,8 @@ double RowImpulses::solve_normal(std::size_t k) {
   const double own = answers_[k].normal;
   if (!(own > 0.0)) return 0.0;
   const double some = regularised * own;
-  const double w = velocity(row, 0) + row.closing + some * row.normal_impulse;
-  double now = std::max(0.0, row.normal_impulse - w / (own + some));
+  const double w = velocity(row, 0) - row.held() + some * row.normal_impulse;
+  double now = std::max(row.aimed ? -row.pushed : 0.0, row.normal_impulse - w / (own + some));
   if (row.recoils) now = std::max(now, recoil(k));
   const double change = now - row.normal_impulse;
   if (change != 0.0) press(k, 0, change);
@@ -162,15 +162,33 @@ double RowImpulses::let_go() {
 
 /// Towards sticking, held on Coulomb's disc: by the larger compliance of the tangents, so that it
 /// stays between nothing and what does no work.
+std::array<double, 2> RowImpulses::held(std::size_t k) const {
+  const DistanceRow& row = rows_[k];
+  std::array<double, 2> now = row.tangential_impulse;
+  for (int t = 0; t + 1 < dim_; ++t) now[index(t)] -= velocity(row, t + 1) / answers_[k].tangential;
+  const double length = std::hypot(now[0], now[1]), most = row.friction * row.normal_impulse;
+  if (length > most)
+    for (double& value : now) value *= most / length;
+  return now;
+}
+
+/// Of rigid sides that are pulled after they were pushed: what friction took with that beyond what
+/// it may with both, and no more work than it took.
+std::array<double, 2> RowImpulses::given_back(const DistanceRow& row) const {
+  const double length = std::hypot(row.rubbed[0], row.rubbed[1]);
+  const double most = row.friction * std::max(0.0, row.pushed + row.normal_impulse);
+  if (length <= most) return {0.0, 0.0};
+  double part = most / length - 1.0, work = 0.0;
+  for (int t = 0; t + 1 < dim_; ++t) work += part * row.rubbed[index(t)] * velocity(row, t + 1);
+  if (work > row.heat) part *= row.heat / work;
+  return {part * row.rubbed[0], part * row.rubbed[1]};
+}
+
 double RowImpulses::solve_friction(std::size_t k) {
   DistanceRow& row = rows_[k];
   const double own = answers_[k].tangential;
   if (!(row.friction > 0.0) || !(own > 0.0)) return 0.0;
-  std::array<double, 2> now = row.tangential_impulse;
-  for (int t = 0; t + 1 < dim_; ++t) now[index(t)] -= velocity(row, t + 1) / own;
-  const double length = std::hypot(now[0], now[1]), most = row.friction * row.normal_impulse;
-  if (length > most)
-    for (double& value : now) value *= most / length;
+  const std::array<double, 2> now = row.normal_impulse < 0.0 ? given_back(row) : held(k);
   double largest = 0.0;
   for (int t = 0; t + 1 < dim_; ++t) {
     const double change = now[index(t)] - row.tangential_impulse[index(t)];
@@ -188,6 +206,23 @@ void RowImpulses::solve(double negligible) {
       change = std::max({change, solve_normal(k), solve_friction(k)});
     if (change < negligible) return;
   }
+}
+
+double RowImpulses::parted() const {
+  double sum = 0.0;
+  for (const DistanceRow& row : rows_) {
+    if (!row.aimed) continue;
+    sum += std::max(0.0, row.normal_impulse * velocity(row, 0));
+  }
+  return sum;
+}
+
+double RowImpulses::returned() const {
+  double sum = 0.0;
+  for (const DistanceRow& row : rows_)
+    for (int t = 0; t + 1 < dim_ && row.normal_impulse < 0.0; ++t)
+      sum += std::max(0.0, row.tangential_impulse[index(t)] * velocity(row, t + 1));
+  return sum;
 }
 
 double RowImpulses::work() const {

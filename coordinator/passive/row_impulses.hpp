@@ -27,6 +27,10 @@ class RowImpulses {
   double velocity(const DistanceRow& row) const { return velocity(row, 0); }
   /// [J] sum of J.w
   double work() const;
+  /// [J] of it that aimed rows give their bodies.
+  double parted() const;
+  /// [J] of it that friction of rigid sides had taken too much.
+  double returned() const;
   /// Rows that are owed something, press no more and part, give it back from now on, and those that
   /// part by this, too; solved again. `negligible`: as above. Its sum [J].
   double release(double negligible);
@@ -50,6 +54,8 @@ class RowImpulses {
   double solve_normal(std::size_t row);
   double recoil(std::size_t row) const;
   double let_go();
+  std::array<double, 2> held(std::size_t row) const;
+  std::array<double, 2> given_back(const DistanceRow& row) const;
   double solve_friction(std::size_t row);
 
   std::vector<DistanceRow>& rows_;

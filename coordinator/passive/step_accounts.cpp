@@ -76,63 +76,86 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
       ledger.deepest = std::max(ledger.deepest, -row.gap);
   }
+  impacts_.next_step();
   return std::nullopt;
 }
 
-/// What a row took is lost until it gives it back, as long as it stays near.
+/// What a row took is lost until it gives it back, as long as it stays near; what rigid bodies lose
+/// is what restitution says.
 void CommonStep::count_normal(const DistanceRow& row, PassiveLedger& ledger) {
-  const double work = row.normal_impulse * row_velocity(row, velocities_, 0);
-  if (work > 0.0 && !row.recoils) {
+  const double velocity = row_velocity(row, velocities_, 0), work = row.normal_impulse * velocity;
+  if (work > 0.0 && !row.recoils && !row.aimed) {
     ledger.push_out += work;
   } else {
     ledger.normal -= work;
     share_out_loss(row, -work, ledger);
   }
-  const double taken = work < 0.0 && is_blow(row) ? -work : 0.0;
+  double approach = 0.0;
+  const bool pressed = row.normal_impulse > 0.0, blow = pressed && is_blow(row, approach);
+  if (impacts_.are_rigid(row)) {
+    ledger.impacts -= work;
+    if (row.aimed) {
+      const double end = 2.0 * velocity - row_velocity(row, start_, 0);
+      const bool rests = std::abs(end - row.parting) <= speed_of_loads(row);
+      if (!rests) impacts_.follow(row, velocity, heat_of(row));
+      return;
+    }
+    if (blow) impacts_.begin(row, approach, heat_of(row));
+    return;
+  }
+  const double taken = work < 0.0 && blow ? -work : 0.0;
   const double owed = row.recoils ? 0.0 : row.owed + given_back * taken;
-  if (owed > 0.0 && gives_back(row)) owed_[row.first_point(0)] += owed;
+  if (owed > 0.0 && !row.behind && surfaces_.skin().dim > 1) owed_[row.first_point(0)] += owed;
 }
 
-/// Whether its sides came faster than loads make them in a few steps: what comes slower lies down.
-/// Without loads sides that meet within the step count, too, whatever they did at its begin.
-bool CommonStep::is_blow(const DistanceRow& row) const {
-  const auto dim = index(surfaces_.skin().dim);
-  double speed = 0.0, loads = 0.0;  // [m/s], [m/s^2]
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (row.weights[i] == 0.0) continue;
-    const TouchingSurfaces::Point& at = surfaces_[row.features.points[i]];
-    const std::vector<double>& velocity = tried_[index(at.body)].ports[index(at.port)].velocity;
-    for (std::size_t k = 0; k < dim; ++k)
-      speed -= row.weights[i] * row.normal(static_cast<Eigen::Index>(k)) *
-               velocity[index(at.point) * dim + k];
-  }
+/// Whether its sides came, at `approach` [m/s], faster than loads make them in a few steps: what
+/// comes slower lies down. Without loads sides that meet within the step count, too, whatever they
+/// did at its begin.
+bool CommonStep::is_blow(const DistanceRow& row, double& approach) const {
+  approach = -row_velocity(row, start_, 0);
+  double speed = approach;  // [m/s]
+  const double loads = speed_of_loads(row);
+  if (loads == 0.0 && row.gap > apart * near_.thickness())  // nothing has to lie down
+    speed = std::max(speed, -row_velocity(row, velocities_, 0));
+  return speed > loads;
+}
+
+/// [m/s] that loads make of what rests, in a few steps.
+double CommonStep::speed_of_loads(const DistanceRow& row) const {
+  double loads = 0.0;  // [m/s^2]
   for (const int side : {0, 1}) {
     const TouchingSurfaces::Point& at = surfaces_[row.first_point(side)];
     loads += bodies_.response(at.body).ports[index(at.port)].acceleration_bound;
   }
-  if (loads == 0.0 && row.gap > apart * near_.thickness())  // nothing has to lie down
-    speed = std::max(speed, -row_velocity(row, velocities_, 0));
-  return speed > steps_of_loads * loads * length();
+  return steps_of_loads * loads * length();
 }
 
-/// What contact takes from rigid bodies alone is gone: how they bounce is a matter of what they are
-/// made of, which nobody has told.
-bool CommonStep::gives_back(const DistanceRow& row) const {
-  if (row.behind || surfaces_.skin().dim == 1) return false;
-  return std::ranges::any_of(std::array{0, 1}, [&](int side) {
-    const TouchingSurfaces::Point& at = surfaces_[row.first_point(side)];
-    return bodies_.port({at.body, at.port}).geometry.transit > 0.0;
-  });
+/// [m/s] of all points where the step begins.
+void CommonStep::see_start() {
+  const std::size_t dim = index(surfaces_.skin().dim);
+  start_.assign(surfaces_.count(), Eigen::Vector3d::Zero());
+  for (std::size_t p = 0; p < start_.size(); ++p) {
+    const TouchingSurfaces::Point& at = surfaces_[static_cast<std::int32_t>(p)];
+    const std::vector<double>& of = replies_[index(at.body)].ports[index(at.port)].velocity;
+    for (std::size_t k = 0; k < dim; ++k)
+      start_[p](static_cast<Eigen::Index>(k)) = of[index(at.point) * dim + k];
+  }
+}
+
+/// [J] that friction took in the step.
+double CommonStep::heat_of(const DistanceRow& row) const {
+  double heat = 0.0;
+  for (const std::size_t t : {0u, 1u})
+    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, static_cast<int>(t) + 1);
+  return heat;
 }
 
 /// What sticks moves by what its bodies' answers leave open, and its force may do work then: no
 /// friction does, so normal contact has to have lost it, as what it pushes out.
 void CommonStep::count_friction(const DistanceRow& row, PassiveLedger& ledger) const {
-  double heat = 0.0;
-  for (const std::size_t t : {0u, 1u})
-    heat -= row.tangential_impulse[t] * row_velocity(row, velocities_, static_cast<int>(t) + 1);
-  if (heat < 0.0) ledger.push_out -= heat;
-  if (!(heat > 0.0)) return;
+  const double heat = heat_of(row);
+  if (heat < 0.0 && !row.aimed) ledger.push_out -= heat;
+  if (!(heat > 0.0) && !row.aimed) return;
   ledger.friction += heat;
   const TouchingSurfaces::Point& one = surfaces_[row.first_point(0)];
   const TouchingSurfaces::Point& other = surfaces_[row.first_point(1)];

@@ -27,10 +27,13 @@ TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bo
   skin_ = skin_of(surfaces);
   skin_.dim = dim_;
   pair_friction_.assign(ports_.size() * ports_.size(), -1.0);
+  pair_restitution_.assign(pair_friction_.size(), 0.0);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::size_t one = index(groups[k][0]), other = index(groups[k][1]);
-    pair_friction_[one * ports_.size() + other] = pairs[k].friction;
-    pair_friction_[other * ports_.size() + one] = pairs[k].friction;
+    for (const std::size_t place : {one * ports_.size() + other, other * ports_.size() + one}) {
+      pair_friction_[place] = pairs[k].friction;
+      pair_restitution_[place] = pairs[k].restitution;
+    }
   }
   find_shortest_edge(bodies);
 }

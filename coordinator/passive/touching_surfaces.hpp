@@ -13,10 +13,11 @@
 
 namespace abut {
 
-/// Two surfaces that may touch, and Coulomb's coefficient between them.
+/// Two surfaces that may touch, Coulomb's coefficient between them, and the part of their speed
+/// with which they part where neither deforms.
 struct TouchingPair {
   std::array<Side, 2> sides;
-  double friction = 0.0;
+  double friction = 0.0, restitution = 0.0;
 };
 
 /// All surfaces of a run that may touch, as one skin: points of all ports, one group per port.
@@ -55,6 +56,10 @@ class TouchingSurfaces {
   double friction(std::int32_t one, std::int32_t other) const {
     return friction_of(skin_.group[one], skin_.group[other]);
   }
+  /// Of two rigid ones.
+  double restitution(std::int32_t one, std::int32_t other) const {
+    return pair_restitution_[index(skin_.group[one]) * ports_.size() + index(skin_.group[other])];
+  }
   /// Whether nothing that presses on a point moves it.
   bool stands(std::int32_t point) const { return stands_[point] != 0; }
   /// Along x, +1 or -1: of a skin of one dimension.
@@ -80,6 +85,7 @@ class TouchingSurfaces {
   std::vector<Point> points_;
   std::vector<Side> ports_;                 // by group
   std::vector<double> pair_friction_;       // (groups, groups); negative: they may not touch
+  std::vector<double> pair_restitution_;    // (groups, groups)
   std::vector<std::uint8_t> stands_;        // (points)
   std::vector<Eigen::Vector3d> reference_;  // [m]
   double shortest_edge_ = 0.0;

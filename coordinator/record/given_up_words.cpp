@@ -50,7 +50,8 @@ std::string joules_words(const GivenUp& up) {
     if (std::abs(joules) > little * std::abs(up.joules()))
       causes += fmt::format("{}{:.3g} J {}", causes.empty() ? "" : ", ", joules, cause);
   };
-  add(up.normal - up.push_out, "in normal contact");
+  add(up.impacts, "by restitution where rigid bodies struck each other");
+  add(up.normal - up.impacts - up.push_out, "in normal contact");
   add(up.damped, "by damping");
   add(up.switched, "where bodies changed their form");
   if (!causes.empty()) text += " (" + causes + ")";

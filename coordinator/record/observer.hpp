@@ -104,8 +104,9 @@ struct GivenUp {
   double shortest_step = 0.0;  // [s]
   std::int64_t unsettled = 0;  // steps of statics after which bodies did not rest yet
   double unbalanced = 0.0;     // most that such a step left, over the most that any began with
-  // [J] lost in normal contact, by friction, by damping, at changes of form; given to part bodies
-  double normal = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
+  // [J] lost in normal contact, of it between rigid bodies; by friction, by damping, at changes of
+  // form; given to part bodies
+  double normal = 0.0, impacts = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
   double repaid = 0.0;   // [J] that accurate windows gained and that was taken back at their ends
   double deepest = 0.0;  // [m] behind a partner's surface
   // [J] the largest kinetic and stored energy of the run, or all that went into it where that is
