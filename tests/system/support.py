@@ -20,7 +20,8 @@ SOLVER = ABUT.with_name("abut-solver")
 PACKAGE = ABUT.parents[1] / "share" / "abut" / "python"  # with abut_tools
 ROOT = Path(sys.argv[2]).resolve()
 CHECKPOINTS = {"checkpoint.abut", "checkpoint.before.abut"}  # of runs that were kept
-SECONDS = 120  # the longest run takes a few seconds; only a hang takes longer
+SLOWER = int(os.environ.get("ABUT_SLOWER", "1"))  # how many times, by sanitizers
+SECONDS = 120 * SLOWER  # the longest run takes a few seconds; only a hang takes longer
 CONNECTED = "two_bars_processes"  # the scene whose solvers somebody else starts
 FILES = {"scene.resolved.yaml", "history.csv", "events.jsonl", "summary.json"}
 MOST_CURVES = 8  # of a figure of a page (tools/abut_tools/run_figures.py)
@@ -127,7 +128,7 @@ class SystemTest(unittest.TestCase):
 
     def solvers(self, count: int) -> list:
         """The solver processes of a run, as soon as there are so many."""
-        until = time.monotonic() + 10.0
+        until = time.monotonic() + 10.0 * SLOWER
         while time.monotonic() < until:
             found = [pid for pid in marked(self.mark) if is_solver(pid)]
             if len(found) == count:
