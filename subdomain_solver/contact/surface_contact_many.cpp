@@ -67,12 +67,13 @@ bool SurfaceContact::find_in_one_matrix(Compliance& give) {
 
 /// What the rows press on: this body, and the partners that give way.
 void SurfaceContact::find_sides() {
+  const int dim = surfaces_.front().surface.geometry->dim;
   sides_.clear();
   PressedSide& own = sides_.emplace_back();
   own.near = &near_give_.kernel();
   own.moved = near_give_.kernel().displacement;
-  own.dim = surfaces_.front().surface.geometry->dim;
-  own.points = dofs_.size() / index(own.dim);
+  own.dim = dim;
+  own.points = dofs_.size() / index(dim);
   own.begins = first_term_;
   for (const Term& term : terms_) own.terms.push_back({term.coordinate, term.factor});
   for (const Meeting& m : meetings_) {
@@ -80,12 +81,12 @@ void SurfaceContact::find_sides() {
     PressedSide& side = sides_.emplace_back();
     side.near = &m.obstacle->kernel();
     side.moved = m.obstacle->give();
-    side.dim = own.dim;
-    side.points = index(m.obstacle->kernel().width) / index(own.dim);
+    side.dim = dim;
+    side.points = index(m.obstacle->kernel().width) / index(dim);
     side.first = m.first;
     side.begins.assign(1, 0);
     const std::span<const double> along = directions(m);
-    for (std::size_t c = 0; c * index(own.dim) < along.size(); ++c) {
+    for (std::size_t c = 0; c * index(dim) < along.size(); ++c) {
       m.obstacle->find_terms(along, c, [&side](std::size_t value, double factor) {
         side.terms.push_back({static_cast<std::int32_t>(value), factor});
       });

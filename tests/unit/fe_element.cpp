@@ -72,7 +72,8 @@ TEST_P(EveryElement, FunctionsSumToOneAndDerivativesToZero) {
 TEST_P(EveryElement, AFunctionIsOneAtItsNodeAndZeroAtTheOthers) {
   ASSERT_EQ(element.corners.size(), nodes * dim);
   for (std::size_t b = 0; b < nodes; ++b) {
-    const Vector at(&element.corners[b * dim], &element.corners[b * dim] + dim);
+    const auto from = element.corners.begin() + static_cast<std::ptrdiff_t>(b * dim);
+    const Vector at(from, from + static_cast<std::ptrdiff_t>(dim));
     const Vector n = values(element, at);
     for (std::size_t a = 0; a < nodes; ++a) EXPECT_EQ(n[a], a == b ? 1.0 : 0.0) << a << " " << b;
   }

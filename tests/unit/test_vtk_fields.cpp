@@ -73,7 +73,7 @@ std::vector<T> decode_array(std::string_view text) {
   }
   EXPECT_EQ(from, packed.size());
   std::vector<T> values(bytes.size() / sizeof(T));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
+  if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
 }
 
