@@ -3,19 +3,9 @@
 #include <algorithm>
 
 #include "base/index.hpp"
+#include "base/one_each.hpp"
 
 namespace abut {
-
-namespace {
-
-template <class T>
-void keep_once(std::vector<T>& values) {
-  std::ranges::sort(values);
-  const auto twice = std::ranges::unique(values);
-  values.erase(twice.begin(), twice.end());
-}
-
-}  // namespace
 
 PointRings::PointRings(int points, std::span<const std::int32_t> facets,
                        std::span<const std::int32_t> offsets, std::span<const std::int32_t> among) {
@@ -34,7 +24,7 @@ PointRings::PointRings(int points, std::span<const std::int32_t> facets,
   }
   first_.assign(1, 0);
   for (std::vector<std::int32_t>& list : lists) {
-    keep_once(list);
+    keep_one_each(list);
     neighbours_.insert(neighbours_.end(), list.begin(), list.end());
     first_.push_back(static_cast<std::int32_t>(neighbours_.size()));
   }
@@ -68,7 +58,7 @@ std::vector<int> PointRings::colours(int rings) {
     taken.clear();
     for (const std::int32_t q : around(p, 2 * rings))
       if (colours[index(q)] >= 0) taken.push_back(colours[index(q)]);
-    keep_once(taken);
+    keep_one_each(taken);
     int free = 0;
     while (index(free) < taken.size() && taken[index(free)] == free) ++free;
     colours[index(p)] = free;
