@@ -45,7 +45,7 @@ void RigidImpacts::aim(std::span<DistanceRow> rows, std::span<const Eigen::Vecto
       aim(row, found.mapped(), begin, free);
   for (const auto& [key, impact] : left) {
     const auto is_next = [&](const DistanceRow& row) {
-      return !row.aimed && row.key()[1] == key[1] && are_rigid(row) &&
+      return !row.aimed && key[1] >= 0 && row.key()[1] == key[1] && are_rigid(row) &&
              row.normal.dot(impact.normal) > nearly_along;
     };
     if (const auto next = std::ranges::find_if(rows, is_next); next != rows.end())

@@ -29,8 +29,9 @@ TEST(RingsOnTheirAxis, LookSomewhereAtEveryPoint) {
       for (std::size_t k = 0; k < skin.normals.size(); k += 2) {
         const double length = std::hypot(skin.normals[k], skin.normals[k + 1]);
         EXPECT_NEAR(length, 1.0, 1.0e-12) << model << ' ' << element << ' ' << k / 2;  // rounding
-        if (skin.points[k] == 0.0 && skin.points[k + 1] > 0.0 && skin.points[k + 1] < 1.0)
+        if (skin.points[k] == 0.0 && skin.points[k + 1] > 0.0 && skin.points[k + 1] < 1.0) {
           EXPECT_EQ(skin.normals[k], -1.0);  // to where no ring is
+        }
       }
     }
   }
