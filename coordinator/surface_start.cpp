@@ -182,18 +182,14 @@ NamedSurface named_surface(const std::string& name, const Description& body, int
   return named;
 }
 
-double overlap_of(const NamedSurface& one, const NamedSurface& other) {
-  const double round = roundness(start(one.geometry), start(other.geometry));
-  const std::vector<OverlapPlace> places = shared_places(one, other, {round, round});
-  const StartSurface k = start(one.geometry), n = start(other.geometry);
-  double depth = places.empty() ? 0.0 : places.front().depth;
-  for (const auto& [own, its] : {std::pair(&k, &n), std::pair(&n, &k)}) {
-    if (rows_of_other(*own, *its)) continue;
-    const SurfaceRows rows = average_rows(*own, *its);
-    const int row = deepest(rows, tolerance * facet_size(k, n));
-    if (row >= 0) depth = std::max(depth, -rows.gaps[row]);
-  }
-  return depth;
+double overlap_of(const NamedSurface& finder, const NamedSurface& other) {
+  const StartSurface k = start(finder.geometry), n = start(other.geometry);
+  const double round = roundness(k, n);
+  const std::vector<OverlapPlace> places = shared_places(finder, other, {round, round});
+  const double depth = places.empty() ? 0.0 : places.front().depth;
+  const SurfaceRows rows = rows_of_other(k, n) ? average_rows(n, k) : average_rows(k, n);
+  const int row = deepest(rows, tolerance * facet_size(k, n));
+  return row < 0 ? depth : std::max(depth, -rows.gaps[row]);
 }
 
 double deepest_fit(const NamedSurface& one, const NamedSurface& other) {

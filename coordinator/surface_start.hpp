@@ -22,8 +22,12 @@ NamedSurface named_surface(const std::string& name, const Description& body, int
 
 /// [m] how deep the sides are in each other in the reference, in places
 /// (surface/overlap_places.hpp) beyond what facets that stand for round bodies leave them, or over
-/// the width of a facet; 0: by no more than a millionth of one.
-double overlap_of(const NamedSurface& one, const NamedSurface& other);
+/// the width of a facet of those that have the contact's rows; 0: by no more than a millionth of
+/// one.
+double overlap_of(const NamedSurface& finder, const NamedSurface& other);
+
+/// [m] by which facets that stand for round bodies leave them, of both together.
+double rise_of(const NamedSurface& one, const NamedSurface& other);
 /// [m] The deepest overlap that may be an interference fit: half of a facet.
 double deepest_fit(const NamedSurface& one, const NamedSurface& other);
 

@@ -32,11 +32,12 @@ void find_fit(const std::array<std::string, 2>& sides, const std::string& where,
   const auto side = [&](std::size_t s) {
     return named_surface(sides[s], bodies.describe(joint.sides[s].body), joint.sides[s].port);
   };
-  const NamedSurface one = side(0), other = side(1);
+  const int found_by = contact_finder(joint, bodies);
+  const NamedSurface one = side(index(found_by)), other = side(index(1 - found_by));
   joint.fit = overlap_of(one, other);
   if (joint.role.fitted < 0 || joint.fit == 0.0) return;
   const Description& finder = bodies.describe(joint.sides[index(joint.role.fitted)].body);
-  if (contact_finder(joint, bodies) != joint.role.fitted || !finder.can.obstacle)
+  if (found_by != joint.role.fitted || !finder.can.obstacle)
     throw InputError(fmt::format("has initial.interference, but {} finds the contact",
                                  sides[index(1 - joint.role.fitted)]),
                      where,
