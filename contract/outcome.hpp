@@ -74,7 +74,7 @@ struct PortResponse {
   double acceleration_bound = 0.0;  // [m/s^2] by which body forces may raise it
   std::optional<Recoil> recoil;     // only bodies that take impulses
   // [J] done on the body through the port over the window, impulses included: the change of the
-  // energy that its integrator conserves [M.23]
+  // energy that its integrator conserves [M.23], less what presses a wanted overlap in
   double work = 0.0;
 };
 

@@ -97,11 +97,16 @@ void SolidInterior::follow_ports(double time) {
   const bool pressed = parts_.problem->contact != nullptr;
   if (!port_forces_->acts() && !pressed) return;
   port_forces_->at(time, now_);
+  const auto pressed_in = [this] { return surfaces_ != nullptr ? surfaces_->pressed_in() : 0.0; };
+  const double done = pressed_in();
   if (pressed) contact_->settle(now_);
   if (description_.quasi_static && surfaces_ != nullptr &&
       std::ranges::all_of(state_.port_force, [](double force) { return force == 0.0; }))
     state_.motion.external_work += surfaces_->taken_at_once();
   add_port_work();
+  // What presses an overlap in is external work, and none that partners do.
+  if (const double more = pressed_in() - done; more != 0.0)
+    worked_[index(std::ranges::find(may_touch_, char{1}) - may_touch_.begin())] -= more;
   state_.port_force = now_;
 }
 

@@ -76,6 +76,12 @@ double unbalanced(const RunResult& run) {
   return sum;
 }
 
+bool told(const RunResult& run, const std::string& words) {
+  return std::ranges::any_of(run.events, [&words](const RunEvent& event) {
+    return event.text.find(words) != std::string::npos;
+  });
+}
+
 TEST(PressFits, StaticsHoldBarsInEquilibrium) {
   for (const int dim : {2, 3}) {
     for (const bool above : {false, true}) {
@@ -95,10 +101,7 @@ TEST(PressFits, StaticsHoldBarsInEquilibrium) {
           // Tolerance of the sweeps.
           EXPECT_NEAR(stored(*run), 0.5 * bars.force() * bars.deep,
                       1.0e-6 * bars.force() * bars.deep);
-          const bool told = std::ranges::any_of(run->events, [](const RunEvent& event) {
-            return event.text.find("interference of 0.01 m is pressed in") != std::string::npos;
-          });
-          EXPECT_EQ(told, *key != '\0');
+          EXPECT_EQ(told(*run, "interference of 0.01 m is pressed in"), *key != '\0');
           // Forces grow linearly with what is pressed in, at once or in steps: sums alone are
           // rounded, beside the sweeps' tolerance, whose error is of second order in the work.
           EXPECT_NEAR(unbalanced(*run), 0.0, 1.0e-9 * bars.force() * bars.deep);
@@ -155,36 +158,41 @@ TEST(PressFits, WhatPressesInIsAllThatIsGained) {
           EXPECT_LT(total, 1.2 * rest);
           // Exactly, whatever the schemes: by trapezoids, as all of them count.
           EXPECT_NEAR(unbalanced(*run), 0.0, 1.0e-11 * rest);  // sums over 200 substeps
+          EXPECT_FALSE(told(*run, "steps of body")) << "which take nothing";
         }
       }
     }
   }
 }
 
-/// A quarter of a hollow shaft in a hub, in plane stress.
+/// A quarter of a ring in plane stress; cells through its wall and around.
+SolidText ring(const std::string& name, double inner, double outer, std::vector<int> cells,
+               const std::string& side, const std::string& start,
+               const std::string& integrator = "quasi_static: {step: 0.25}") {
+  return {.name = name,
+          .material =
+              "linear_elastic: {youngs_modulus: 2.1e11, poissons_ratio: 0.3, density: 7800.0}",
+          .integrator = integrator,
+          .side = side,
+          .keys = fmt::format("plane: stress, map: [\"({0} + {1} * x) * cos(y * pi / 180)\", "
+                              "\"({0} + {1} * x) * sin(y * pi / 180)\"], ",
+                              number(inner), number(outer - inner)),
+          .start = start,
+          .more = "    constraints: {a: {on: bottom, y: \"0\"}, b: {on: top, x: \"0\"}}\n",
+          .block = {{1.0, 90.0}, std::move(cells)}};
+}
+
+const std::string ring_fit = "  fit: {sides: [hub.face, shaft.face], contact: {}}\n";
+
+/// A quarter of a hollow shaft in a hub.
 ResultPtr rings(int around, double interference, const std::string& key, double end,
                 const std::string& integrator = "quasi_static: {step: 0.25}",
                 double window = 0.25) {
-  const auto ring = [&](const std::string& name, double inner, double outer, int through,
-                        const std::string& side) {
-    return SolidText{
-        .name = name,
-        .material =
-            "linear_elastic: {youngs_modulus: 2.1e11, poissons_ratio: 0.3, density: 7800.0}",
-        .integrator = integrator,
-        .side = side,
-        .keys =
-            fmt::format("plane: stress, map: [\"({0} + {1} * x) * cos(y * pi / 180)\", \"({0} + "
-                        "{1} * x) * sin(y * pi / 180)\"], ",
-                        number(inner), number(outer - inner)),
-        .start = name == "hub" ? key : "",
-        .more = "    constraints: {a: {on: bottom, y: \"0\"}, b: {on: top, x: \"0\"}}\n",
-        .block = {{1.0, 90.0}, {through, around}}};
-  };
-  return run_solids(end, window,
-                    {ring("hub", 0.010, 0.020, around / 2, "left"),
-                     ring("shaft", 0.004, 0.010 + interference, around / 3, "right")},
-                    "  fit: {sides: [hub.face, shaft.face], contact: {}}\n");
+  return run_solids(
+      end, window,
+      {ring("hub", 0.010, 0.020, {around / 2, around}, "left", key, integrator),
+       ring("shaft", 0.004, 0.010 + interference, {around / 3, around}, "right", "", integrator)},
+      ring_fit);
 }
 
 TEST(PressFits, RingsPressAsLameSays) {
@@ -213,6 +221,42 @@ TEST(PressFits, RingsPressAsLameSays) {
   // Bilinear cells, and polygons of unlike numbers of corners for the circle.
   EXPECT_LT(std::abs(errors[0]), 2.0e-3);
   EXPECT_LT(std::abs(errors[1]), std::abs(errors[0]));
+}
+
+/// Of a wedge on a floor of three facets: averages over the floor's nodes, which have no rows of
+/// contact, see its slope half a metre behind them.
+TEST(PressFits, WhatTouchesIsNone) {
+  const SolidText wedge{.name = "wedge",
+                        .material = "linear_elastic: {youngs_modulus: 1.0e9, poissons_ratio: 0.3, "
+                                    "density: 1000.0}",
+                        .integrator = "quasi_static: {step: 0.5}",
+                        .side = "boundary",
+                        .keys = "map: [x, \"y * (0.1 + 0.3 * x)\"], ",
+                        .more = "    loads: {g: {acceleration: [\"0\", \"-9.81\"]}}\n",
+                        .block = {{1.0, 1.0}, {6, 3}}};
+  const SolidText floor{.name = "floor",
+                        .position = {-1.5, -0.3},
+                        .side = "boundary",
+                        .model = "rigid_tool",
+                        .block = {{4.0, 0.3}, {3, 1}}};
+  const auto run = run_solids(1.0, 0.5, {wedge, floor},
+                              "  rest: {sides: [wedge.face, floor.face], contact: {friction: "
+                              "0.3}}\n");
+  ASSERT_TRUE(run->completed()) << run->end.reason;
+  EXPECT_FALSE(told(*run, "is pressed in"));
+}
+
+/// Polygons of eight and thirteen corners in a quarter, which stand off each other by more than the
+/// interference on the average of any node of the one that finds the contact.
+TEST(PressFits, PolygonsThatOverlapNowhereAreRefused) {
+  expect_words(refusal([] {
+                 run_solids(0.25, 0.25,
+                            {ring("hub", 0.010, 0.020, {3, 13}, "left", ""),
+                             ring("shaft", 0.004, 0.010 + 6.7e-6, {2, 8}, "right",
+                                  "interference: {over: 0}")},
+                            ring_fit);
+               }),
+               {"bodies.shaft.initial.interference", "has no effect"});
 }
 
 void expect_refused(const Bars& bars, std::initializer_list<const char*> words) {
