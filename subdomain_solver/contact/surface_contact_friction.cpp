@@ -201,6 +201,11 @@ bool SurfaceContact::find_forces() {
 
 /// Where the forces that were found last are farthest from what contact asks for, and how far.
 void SurfaceContact::tell_missing() {
+  if (!gaps_.allFinite() || !compliance_.allFinite()) {
+    missing_ =
+        "it strains so far in a step that its surface is nowhere any more; take a smaller step";
+    return;
+  }
   double most = -1.0;
   for (const Meeting& m : meetings_) {
     const SurfaceRows& rows = m.obstacle->rows();
