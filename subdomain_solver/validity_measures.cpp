@@ -23,10 +23,16 @@ bool has_hourglass_energy(const FeModel& model, bool deforms) {
                      [](const CellBlock& cells) { return has_hourglasses(*cells.element); });
 }
 
+/// By its surface, which has no mass.
+bool turns_faster(const FeModel& model, bool deforms) {
+  return deforms && model.inertia_left() < 1.0;
+}
+
 }  // namespace
 
 std::vector<std::string> validity_measure_names(const FeModel& model, bool deforms) {
   std::vector<std::string> names;
+  if (turns_faster(model, deforms)) names.insert(names.end(), {"inertia.left", "inertia.turned"});
   if (turns(model, deforms)) names.emplace_back("rotation.max");
   if (has_hourglass_energy(model, deforms))
     names.insert(names.end(), {"energy.hourglass", "energy.hourglass_share"});
@@ -36,7 +42,10 @@ std::vector<std::string> validity_measure_names(const FeModel& model, bool defor
 std::vector<double> validity_measures(const FeModel& model, bool deforms, std::span<const double> u,
                                       double stored, double turned) {
   std::vector<double> out;
-  if (turns(model, deforms)) out.push_back(std::max(turned, largest_rotation(model.mesh(), u)));
+  const bool faster = turns_faster(model, deforms), small = turns(model, deforms);
+  if (faster || small) turned = std::max(turned, largest_rotation(model.mesh(), u));
+  if (faster) out.insert(out.end(), {model.inertia_left(), turned});
+  if (small) out.push_back(turned);
   if (has_hourglass_energy(model, deforms)) {
     const double energy = hourglass_energy(model, u);
     out.insert(out.end(), {energy, stored > 0.0 ? energy / stored : 0.0});

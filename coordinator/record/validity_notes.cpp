@@ -14,6 +14,9 @@ namespace {
 constexpr double lengthened = 0.01;
 /// Of the stored energy: the usual bound for cells of one point.
 constexpr double in_hourglasses = 0.1;
+/// Of the moment of inertia, of bodies that have turned by more than the angle [rad], and of any:
+/// what rolls is a thirtieth faster, and of any an impact is off by some hundredths.
+constexpr double inertia_of_what_turns = 0.9, inertia_of_all = 0.75, has_turned = 0.1;
 /// Of the kinetic and stored energy: what a body stores below this is vibration of no interest.
 constexpr double worth_a_look = 1.0e-6;
 
@@ -75,6 +78,15 @@ std::string sweeps_remedy(std::span<const Description* const> bodies) {
 
 std::vector<std::string> validity_notes(const Description& body, std::span<const double> values) {
   std::vector<std::string> notes;
+  if (const double left = told(body, values, "inertia.left");  // 0: all of it
+      left > 0.0 && (left < inertia_of_all || (left < inertia_of_what_turns &&
+                                               told(body, values, "inertia.turned") > has_turned)))
+    notes.push_back(fmt::format(
+        "'{0}' has {1:.0f} % of its moment of inertia in windows that are not passive, as the mass "
+        "of its surface lies further inside there: it turns that much more easily, and is shorter "
+        "for waves. Let the port be the side that touches, use a finer mesh, or "
+        "bodies.{0}.contact_layer: massive",
+        body.name, 100.0 * left));
   const double turned = told(body, values, "rotation.max");
   const double longer = std::hypot(1.0, turned) - 1.0;  // a law of small rotations sees no strain
   if (longer > lengthened) {

@@ -3,7 +3,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/index.hpp"
@@ -43,14 +42,15 @@ class FeModel final : public Model {
   /// Moves the mass of these dofs (sorted) to those of the others of their cells, direction by
   /// direction (the surface layer, [M.85]), once, before anything asks for a mass; cells that have
   /// no others give theirs to the nearest nodes that have some. `held`: dofs (sorted) whose motion
-  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left;
-  /// all masses are as before then.
-  void make_massless(std::vector<int> bare, const std::vector<int>& held);
+  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left,
+  /// or less of a moment of inertia than least_left [M.162]; all masses are as before then.
+  void make_massless(std::vector<int> bare, const std::vector<int>& held, double least_left = 0.0);
 
   /// [kg] (dofs) lumped, as if none were massless, with the centre that the layer leaves [M.150].
   const Vector& whole_mass() const { return whole_.size() > 0 ? whole_ : lumped_; }
   /// [kg] (dofs, dofs) that coordinates without mass, the rows, gave to others.
   SparseMatrix given_mass() const;
+  double inertia_left() const { return inertia_left_; }  // [M.162]; 1 of what is held or round
 
   const Mesh& mesh() const { return mesh_; }
   const Material& material() const { return *material_; }
@@ -185,8 +185,8 @@ class FeModel final : public Model {
   mutable std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<BatchedCells> batched_;        // null: cell by cell
   std::unique_ptr<BatchedLayer> batched_layer_;  // where batched_ is; when first asked for
-  Vector lumped_;
-  Vector whole_;  // as lumped_ was before make_massless(); empty: the same
+  Vector lumped_, whole_;  // whole_: as lumped_ was before make_massless(); empty: the same
+  double inertia_left_ = 1.0;
   CellKernel kernel_;
   std::unique_ptr<CellAnswers> answers_;  // of all cells
   CellResponse local_;

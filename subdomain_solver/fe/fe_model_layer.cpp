@@ -16,6 +16,7 @@
 #include "base/index.hpp"
 #include "base/one_each.hpp"
 #include "subdomain_solver/fe/fe_model.hpp"
+#include "subdomain_solver/fe/layer_inertia.hpp"
 #include "subdomain_solver/solve/linear_solver.hpp"
 
 namespace abut {
@@ -96,7 +97,8 @@ int FeModel::layer_place(int dof) const {
   return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
 }
 
-void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held) {
+void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held,
+                            double least_left) {
   ABUT_ASSERT(bare_.empty() && (!assembly_ || assembly_->mass.size() == 0));
   bare_ = std::move(bare);
   held_ = held;
@@ -113,6 +115,13 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     lump_mass();
     // What is held, and what is round, has no angular momentum to keep.
     if (mesh_.dim > 1 && held.empty() && frames_.empty() && !round()) {
+      inertia_left_ = abut::inertia_left(mesh_, whole_, lumped_);
+      if (inertia_left_ < least_left)
+        throw InputError(
+            fmt::format("has a surface that leaves {:.0f} % of its moment of inertia while it is "
+                        "free of mass, as contact needs it",
+                        100.0 * inertia_left_),
+            "mesh", "Make the mesh four elements across, or give fewer ports contact.");
       std::optional<Vector> centred = with_centre_of(mesh_, whole_, lumped_);
       if (!centred)
         throw InputError(
@@ -123,6 +132,7 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     }
   } catch (const InputError&) {
     if (whole_.size() > 0) lumped_ = std::exchange(whole_, Vector());
+    inertia_left_ = 1.0;
     bare_.clear();
     massless_.clear();
     held_.clear();
