@@ -97,8 +97,7 @@ int FeModel::layer_place(int dof) const {
   return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
 }
 
-void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held,
-                            double least_left) {
+void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held) {
   ABUT_ASSERT(bare_.empty() && (!assembly_ || assembly_->mass.size() == 0));
   bare_ = std::move(bare);
   held_ = held;
@@ -116,12 +115,6 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held,
     // What is held, and what is round, has no angular momentum to keep.
     if (mesh_.dim > 1 && held.empty() && frames_.empty() && !round()) {
       inertia_left_ = abut::inertia_left(mesh_, whole_, lumped_);
-      if (inertia_left_ < least_left)
-        throw InputError(
-            fmt::format("has a surface that leaves {:.0f} % of its moment of inertia while it is "
-                        "free of mass, as contact needs it",
-                        100.0 * inertia_left_),
-            "mesh", "Make the mesh four elements across, or give fewer ports contact.");
       std::optional<Vector> centred = with_centre_of(mesh_, whole_, lumped_);
       if (!centred)
         throw InputError(

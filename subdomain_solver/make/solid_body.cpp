@@ -77,22 +77,17 @@ std::vector<int> layer_coordinates(const FeModel& model, const BodySpec& spec,
   return dofs;
 }
 
-/// Of a moment of inertia: what has less left without mass outside would turn more than twice as
-/// fast. Of three cells across .27 is left, of four half.
-constexpr double least_inertia = 0.45;
-
 /// Whether the surface is free of mass now. One that cannot be, of a body one element across for
-/// instance, or that would leave too little of a moment of inertia, keeps it, unless the scene asks
-/// for its layer. Bars have no passive form.
+/// instance, keeps it, unless the scene asks for its layer. Bars have no passive form.
 bool give_layer(FeModel& model, std::vector<int> layer, const std::vector<int>& held,
                 const BodySpec& spec, const Place& place) {
   if (std::holds_alternative<MassiveSpec>(spec.contact_layer)) return false;
-  const auto* massless = std::get_if<MasslessSpec>(&spec.contact_layer);
-  const bool required = massless != nullptr && massless->required;
   try {
-    model.make_massless(std::move(layer), held, required ? 0.0 : least_inertia);
+    model.make_massless(std::move(layer), held);
     return true;
   } catch (const InputError& error) {
+    const auto* massless = std::get_if<MasslessSpec>(&spec.contact_layer);
+    const bool required = massless != nullptr && massless->required;
     if (model.mesh().dim > 1 && !required) return false;
     throw InputError(error.what_is_wrong, place.where("model.fe.mesh"), error.remedy);
   }
