@@ -276,9 +276,12 @@ TEST(EnergyGuard, FailsARunThatGains) {
 TEST(EnergyGuard, NamesTheRemedyOfWhatGains) {
   const auto words = [](const ResultPtr& r) {
     EXPECT_EQ(r->end.status, "failed");
-    const std::string text = r->events.empty() ? std::string() : r->events.back().text;
-    const std::size_t from = text.find("; give ");
-    return from == std::string::npos ? text : text.substr(from, text.find("; the bound") - from);
+    for (const RunEvent& event : r->events) {  // notes on meshes come after it
+      const std::string& text = event.text;
+      const std::size_t from = text.find("; give ");
+      if (from != std::string::npos) return text.substr(from, text.find("; the bound") - from);
+    }
+    return std::string();
   };
   EXPECT_EQ(words(run(gaining())),
             "; give smaller steps, or transmission: unilateral with contact_layer: massless");
