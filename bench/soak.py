@@ -40,20 +40,16 @@ bodies:
     initial: {position: [-0.1, -0.1]}
     ports: {face: {side: boundary}}
   lid:
-    model: {rigid_tool: {dimension: 2, mesh: {rectangle: {lengths: [2.4, 0.1], elements: [1, 1]}},
-                        way: ["0", "0.02 * sin(20 * t)"]}}
+    like: floor
     initial: {position: [-0.1, 1.8]}
-    ports: {face: {side: boundary}}
   west:
     model: {rigid_tool: {dimension: 2, mesh: {rectangle: {lengths: [0.1, 2.4], elements: [1, 1]}},
                         way: ["0", "0"]}}
     initial: {position: [-0.1, -0.3]}
     ports: {face: {side: boundary}}
   east:
-    model: {rigid_tool: {dimension: 2, mesh: {rectangle: {lengths: [0.1, 2.4], elements: [1, 1]}},
-                        way: ["0", "0"]}}
+    like: west
     initial: {position: [2.2, -0.3]}
-    ports: {face: {side: boundary}}
 contact: {everything: {friction: 0.3}}
 output: {records_per_window: 1}
 """
