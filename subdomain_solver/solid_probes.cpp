@@ -33,6 +33,7 @@ bool SolidInterior::rest(std::size_t) {
   const std::size_t coordinates = motion.q.size(), rates = motion.v.size();
   state_ = State{};
   motion.q.assign(coordinates, 0.0);
+  if (parts_.rigid != nullptr) motion.q = parts_.rigid->coordinates({});  // an attitude is not 0
   motion.v.assign(rates, 0.0);
   MasslessLayer* layer = parts_.scheme.integrator->able().layer;
   if (layer != nullptr) layer->release();

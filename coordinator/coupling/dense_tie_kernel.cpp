@@ -53,6 +53,7 @@ class DenseTieKernel final : public TieKernel {
   void find_scale(const TieLayout& layout);
   bool redundant() const override { return inverse_.size() > 0; }
 
+  bool rigid_ = false;                   // all parts: rows are redundant however they turn
   std::vector<Responses> responses_;     // by part; kept where bodies bend or turn
   std::vector<Eigen::MatrixXd> turns_;   // (all ends of parts that turn) that blocks are made for
   std::vector<Eigen::MatrixXd> blocks_;  // [m/N] by lag
@@ -130,7 +131,16 @@ Responses turned(const TieLayout& layout, const TieLayout::Part& part, Responses
   return responses;
 }
 
-DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies) {
+bool is_rigid(const TieLayout& layout, const TieLayout::Part& part, const Bodies& bodies) {
+  return part.stands || std::ranges::all_of(part.ends, [&](const TieLayout::End& end) {
+           return bodies.port(layout.side(end)).geometry.transit == 0.0;
+         });
+}
+
+DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies)
+    : rigid_(std::ranges::all_of(layout.parts, [&](const TieLayout::Part& part) {
+        return is_rigid(layout, part, bodies);
+      })) {
   for (const TieLayout::Part& part : layout.parts)
     responses_.push_back(part.stands ? Responses()
                                      : responses_of(layout, part, part.steps * lags, bodies));
@@ -143,9 +153,9 @@ DenseTieKernel::DenseTieKernel(const TieLayout& layout, int lags, Bodies& bodies
 }
 
 /// Undeformed bodies that have turned by an angle would be wrong by as much. Supports do not turn:
-/// where they hold rows of both sides, kernels stay as they are.
+/// where they hold rows of both sides of what deforms, kernels stay as they are.
 void DenseTieKernel::turn(const TieLayout& layout) {
-  if (responses_.empty() || redundant()) return;
+  if (responses_.empty() || (redundant() && !rigid_)) return;
   std::vector<Eigen::MatrixXd> now;
   for (const TieLayout::Part& part : layout.parts)
     for (const TieLayout::End& end : part.ends)
@@ -159,7 +169,7 @@ void DenseTieKernel::turn(const TieLayout& layout) {
   if (most <= noticed_turn) return;
   std::swap(turns_, now);
   find_blocks(layout, lags());
-  if (!redundant()) return;
+  if (!redundant() || rigid_) return;
   turns_ = std::move(now);
   find_blocks(layout, lags());
 }

@@ -152,7 +152,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   }
   see_velocities();
   near_.find_on_ways(from_, to_, rows_);
-  impacts_.aim(rows_, start_, velocities_);
+  impacts_.aim(rows_, start_, velocities_, ties_);
   if (std::optional<Refusal> refused = iterate()) return refused;
   return accept(lenient, ledger);
 }

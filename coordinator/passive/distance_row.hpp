@@ -36,7 +36,7 @@ struct DistanceRow {
   // Of rigid sides in an impact [M.161]: it has this mean velocity after the step, by an impulse of
   // at least -pushed, so that they part with so much.
   bool aimed = false;
-  double aim = 0.0, parting = 0.0;  // [m/s]
+  double aim = 0.0, approach = 0.0, parting = 0.0;  // [m/s]
   double pushed = 0.0;              // [N s]
   std::array<double, 2> rubbed{};   // [N s] along the tangents, by friction with that
   double heat = 0.0;                // [J] that it took

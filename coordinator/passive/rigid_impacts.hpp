@@ -7,6 +7,7 @@
 
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/passive/distance_row.hpp"
+#include "coordinator/passive/passive_ties.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
 
 namespace abut {
@@ -24,9 +25,9 @@ class RigidImpacts {
   /// Whether neither side of a row deforms.
   bool are_rigid(const DistanceRow& row) const;
   /// Aims the rows of a step, which have no impulses yet, by their velocities [m/s] at its begin
-  /// and mean ones when nothing presses (points).
+  /// and mean ones when nothing presses and no joint holds (points).
   void aim(std::span<DistanceRow> rows, std::span<const Eigen::Vector3d> begin,
-           std::span<const Eigen::Vector3d> free) const;
+           std::span<const Eigen::Vector3d> free, const PassiveTies& ties) const;
   /// After a step: a row that pressed for the first time, coming at `approach` [m/s], with what
   /// its friction took [J].
   void begin(const DistanceRow& row, double approach, double heat);
@@ -39,7 +40,8 @@ class RigidImpacts {
 
  private:
   struct Impact {
-    double parting = 0.0;                              // [m/s] that the sides shall part with
+    double approach = 0.0;                             // [m/s] with which the sides came
+    double parting = 0.0;                              // [m/s] that they shall part with
     double pushed = 0.0;                               // [N s] by which they were pushed so far
     double heat = 0.0;                                 // [J] of friction with that
     Eigen::Vector3d rubbed = Eigen::Vector3d::Zero();  // [N s] of it
@@ -47,8 +49,7 @@ class RigidImpacts {
   };
   using Impacts = std::map<DistanceRow::Key, Impact>;
 
-  void aim(DistanceRow& row, const Impact& impact, std::span<const Eigen::Vector3d> begin,
-           std::span<const Eigen::Vector3d> free) const;
+  void aim(DistanceRow& row, const Impact& impact, double begin, double free) const;
 
   const TouchingSurfaces& surfaces_;
   const Bodies& bodies_;
