@@ -58,11 +58,13 @@ TEST(PassiveBars, EnergyChangesByTheWorkOfImpulses) {
         // The midpoint rule keeps the energy of linear bodies exactly, of others to its order.
         const double energy = reply.record.energy.total();
         const double change = kept(reply.record) - kept(before.record);
-        if (text.material.starts_with("linear"))
+        if (text.material.starts_with("linear")) {
           EXPECT_NEAR(change, worked, roundoff(1.0e3, energy));
-        if (!held)
+        }
+        if (!held) {
           EXPECT_NEAR(reply.record.momentum[0] - before.record.momentum[0], impulses[0],
                       roundoff(1.0e4, 1.0));
+        }
         before = reply;
       }
     }
@@ -110,7 +112,9 @@ TEST(PassiveBars, GoThereAndBackWithTheirEnergy) {
       PassiveRun run(nullptr, *body, 0.05);
       const BodyRecord passive = run.step(1.0e-12).record;  // as good as none
       EXPECT_NEAR(kept(passive), kept(own) - lost, roundoff(1.0e4, own.energy.total()));
-      if (!held) EXPECT_NEAR(passive.momentum[0], own.momentum[0], roundoff(1.0e4, 1.0));
+      if (!held) {
+        EXPECT_NEAR(passive.momentum[0], own.momentum[0], roundoff(1.0e4, 1.0));
+      }
       for (int k = 0; k < 5; ++k) run.step(0.01);
       const BodyRecord last = run.step(0.01).record;
       double left = 0.0;
@@ -118,7 +122,9 @@ TEST(PassiveBars, GoThereAndBackWithTheirEnergy) {
       EXPECT_NEAR(left, 0.0, 1.0e-9 * last.energy.total());  // as above
       const BodyRecord back = advance(run.time, run.time);
       EXPECT_NEAR(kept(back), kept(last) - left, roundoff(1.0e4, last.energy.total()));
-      if (!held) EXPECT_NEAR(back.momentum[0], last.momentum[0], roundoff(1.0e4, 1.0));
+      if (!held) {
+        EXPECT_NEAR(back.momentum[0], last.momentum[0], roundoff(1.0e4, 1.0));
+      }
       const BodyRecord on = advance(run.time, run.time + 0.05);
       // Schemes of finite strain keep their energy to the square of their step.
       EXPECT_LT(kept(on), kept(back) * (1.0 + 1.0e-3));
