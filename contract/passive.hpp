@@ -43,6 +43,9 @@ struct PassiveReply {
   BodyRecord record;  // at the step's end; energy in the form that the midpoint rule conserves
   // [m] by which a point of a port leaves the straight way at most: of bodies that turn
   double bulge = 0.0;
+  // Of bodies without inertia that contact alone holds: what held it in the step, as a part of the
+  // forces on it, over what is allowed at the end of a run; 0 of all others
+  double held = 0.0;
 };
 
 /// A body in its passive form. Whether it is in it belongs to its state: Subdomain::restore takes

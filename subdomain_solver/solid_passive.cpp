@@ -412,6 +412,7 @@ std::optional<Failed> SolidInterior::pass(const PassiveStep& step, PassiveReply&
 std::optional<Failed> SolidInterior::pass_guarded(const PassiveStep& step, PassiveReply& reply) {
   Motion& motion = state_.motion;
   take_impulses(step);
+  reply.held = 0.0;
   if (step.length() == 0.0) {
     port_map_->displacement(motion.q, before_);
     reply.bulge = 0.0;
@@ -426,7 +427,8 @@ std::optional<Failed> SolidInterior::pass_guarded(const PassiveStep& step, Passi
     midpoint_->go_on_from_last(step.again);
     if (auto failed = step_guarded(step)) return failed;
     if (QuasiStatic* statics = parts_.scheme.integrator->able().statics)
-      statics->tell_held(midpoint_->borne(), midpoint_->moved(), midpoint_->acting(), motion);
+      reply.held =
+          statics->tell_held(midpoint_->borne(), midpoint_->moved(), midpoint_->acting(), motion);
     port_map_->velocity(motion.q, midpoint_->moved(), before_);  // a linear map
     reply.bulge = 0.0;
   }

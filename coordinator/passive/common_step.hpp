@@ -54,6 +54,7 @@ class CommonStep {
   // Of the last step that was taken:
 
   double farthest() const;  // [m] by which a point moved at most
+  double held() const;      // most that a body was held in the step, as PassiveReply::held
 
   const BodyRecord& record(int body) const { return replies_[index(body)].record; }
   /// [m], [m/s] of a port's points, from the reference configuration.

@@ -30,6 +30,8 @@ constexpr double most_of_share = 0.99;
 /// to rest.
 constexpr int most_settling_steps = 60;
 constexpr double settled = 1.0e-4, nearly_settled = 1.0e-3;
+/// Of what may hold a body at the end of a run.
+constexpr double hardly_held = 0.5;
 /// They are held so loosely that they should go this far, in parts of the farthest step. What
 /// drifts along a way on which nothing else holds it would go farther in vain.
 constexpr double settling_way = 0.5;
@@ -184,7 +186,7 @@ void PassiveWay::settle(double begin, double end, bool lenient) {
   double least = left;
   int most = loosest, vain = 0, further = 0;
   for (int k = 0; k < most_settling_steps && vain < most_vain_steps; ++k) {
-    if (left <= settled * farthest_) return;
+    if (left <= settled * farthest_ && step_->held() <= hardly_held) return;
     const double free = std::log2(settling_way * farthest_ / left) / 2.0;
     int looser = static_cast<int>(std::clamp<double>(free, std::min(1, most), most));
     const int before = looser;

@@ -130,6 +130,12 @@ double CommonStep::speed_of_loads(const DistanceRow& row) const {
   return steps_of_loads * loads * length();
 }
 
+double CommonStep::held() const {
+  double most = 0.0;
+  for (const PassiveReply& reply : replies_) most = std::max(most, reply.held);
+  return most;
+}
+
 /// [m/s] of all points where the step begins.
 void CommonStep::see_start() {
   const std::size_t dim = index(surfaces_.skin().dim);

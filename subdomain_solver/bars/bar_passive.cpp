@@ -189,7 +189,7 @@ std::optional<Failed> BarInterior::pass(const PassiveStep& step, PassiveReply& r
   reply.compliance.clear();
   for (const int of : pressed)
     for (const int by : pressed) reply.compliance.push_back(midpoint_->compliance(of, by));
-  reply.bulge = 0.0;
+  reply.bulge = reply.held = 0.0;
   return std::nullopt;
 }
 

@@ -15,11 +15,48 @@ namespace {
 /// Of the largest: smaller pressures are none.
 constexpr double least_share = 1.0e-9;
 
+/// Of a node's force, what it must have along the normal of a facet, over the most that it has on
+/// one of the node's: facets around an edge that look elsewhere are not pressed.
+constexpr double along = 0.6;
+
 struct Touch {
-  std::vector<double> pose, normals, weights;  // now; [m], [m^2]
-  std::vector<double> pressure;                // [Pa] (points)
+  std::vector<double> pose, normals, weights;      // now; [m], [m^2] of the facets that are pressed
+  std::vector<std::array<double, 4>> facet_parts;  // [m^2] (facets) of them, by node
+  std::vector<double> pressure;                    // [Pa] (points)
   double most = 0.0;
 };
+
+/// Weights and normals of the nodes, of facets that the force on a node may press.
+void weigh(const TouchedSurface& s, const PosedSurface& now, std::span<const double> forces,
+           Touch& t) {
+  const int dim = now.dim;
+  std::vector<Eigen::Vector3d> facet_normals;
+  std::vector<double> most(s.nodes.size(), 0.0);  // [N] along one of its facets' normals
+  const auto inward = [&](std::int32_t node, const Eigen::Vector3d& normal) {
+    double sum = 0.0;
+    for (int i = 0; i < dim; ++i) sum -= normal(i) * forces[s.first + index(node * dim + i)];
+    return sum;
+  };
+  for (int f = 0; f < now.facet_count(); ++f) {
+    facet_normals.push_back(mean_normal(corners(now, f)));
+    for (const std::int32_t node : now.nodes(f))
+      most[index(node)] = std::max(most[index(node)], inward(node, facet_normals.back()));
+  }
+  t.normals.assign(t.pose.size(), 0.0);
+  t.weights.assign(s.nodes.size(), 0.0);
+  for (int f = 0; f < now.facet_count(); ++f) {
+    std::array<double, 4>& parts = t.facet_parts.emplace_back(facet_weights(now, f));
+    const Eigen::Vector3d normal = facet_normals[index(f)], whole = area_vector(corners(now, f));
+    const std::span<const std::int32_t> nodes = now.nodes(f);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::size_t node = index(nodes[i]);
+      if (most[node] > 0.0 && inward(nodes[i], normal) < along * most[node]) parts[i] = 0.0;
+      if (parts[i] == 0.0) continue;
+      t.weights[node] += parts[i];
+      for (int k = 0; k < dim; ++k) t.normals[node * index(dim) + index(k)] += whole(k);
+    }
+  }
+}
 
 /// Of facets that show a face of second order the forces of its nodes are those of the element's
 /// shapes (1 : 4 : 1 along an edge), not those of the facets: their pressure is known on the
@@ -32,9 +69,9 @@ void smooth_faces(const PortGeometry& geometry, const PosedSurface& now, Touch& 
     double force = 0.0, area = 0.0;
     const auto each = [&](const auto& visit) {
       for (int f = facet; f < facet + parts; ++f) {
-        const std::array<double, 4> weights = facet_weights(now, f);
         const std::span<const std::int32_t> nodes = now.nodes(f);
-        for (std::size_t i = 0; i < nodes.size(); ++i) visit(index(nodes[i]), weights[i]);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          visit(index(nodes[i]), t.facet_parts[index(f)][i]);
       }
     };
     each([&](std::size_t node, double weight) {
@@ -46,10 +83,8 @@ void smooth_faces(const PortGeometry& geometry, const PosedSurface& now, Touch& 
     });
     facet += parts;
   }
-  std::vector<double> weights;
-  tributary_weights(now, weights);
   for (std::size_t a = 0; a < t.pressure.size(); ++a)
-    t.pressure[a] = weights[a] > 0.0 ? of_faces[a] / weights[a] : 0.0;
+    t.pressure[a] = t.weights[a] > 0.0 ? of_faces[a] / t.weights[a] : 0.0;
 }
 
 Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
@@ -59,16 +94,17 @@ Touch touch_of(const TouchedSurface& s, std::span<const double> forces,
   t.pose = s.geometry->points;
   for (std::size_t v = 0; v < t.pose.size(); ++v) t.pose[v] += places[s.first + v];
   const PosedSurface now = posed(*s.geometry, t.pose);
-  nodal_normals(now, t.normals);
-  tributary_weights(now, t.weights);
+  weigh(s, now, forces, t);
+  const double thickness = dim == 2 && !s.geometry->round ? s.thickness : 1.0;
   for (std::size_t a = 0; a < s.nodes.size(); ++a) {
-    double inward = 0.0;
-    for (std::size_t i = 0; i < dim; ++i)
-      inward -= t.normals[a * dim + i] * forces[s.first + a * dim + i];
-    t.weights[a] *= dim == 2 && !s.geometry->round ? s.thickness : 1.0;
-    t.pressure.push_back(t.weights[a] > 0.0 ? inward / t.weights[a] : 0.0);
+    const Eigen::Map<const Eigen::VectorXd> normal(t.normals.data() + a * dim, s.geometry->dim);
+    const Eigen::Map<const Eigen::VectorXd> force(forces.data() + s.first + a * dim,
+                                                  s.geometry->dim);
+    const double size = normal.norm(), weight = t.weights[a] * thickness;
+    t.pressure.push_back(weight > 0.0 && size > 0.0 ? -normal.dot(force) / size / weight : 0.0);
   }
   smooth_faces(*s.geometry, now, t);
+  for (double& weight : t.weights) weight *= thickness;
   for (const double pressure : t.pressure) t.most = std::max(t.most, pressure);
   return t;
 }

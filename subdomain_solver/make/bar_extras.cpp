@@ -69,7 +69,8 @@ std::vector<double> nodal(const std::vector<std::string>& texts, const char* key
   if (texts.empty()) return values;
   const ScalarField field = field_of(texts, 1, place.where(key))[0];
   for (int node = 0; node < bar.nodes(); ++node)
-    values.push_back(field({bar.place_of(node), 0.0, 0.0}, 0.0));
+    values.push_back(
+        start_value(field, {bar.place_of(node), 0.0, 0.0}, 1, place.where(key)));
   return values;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/index.hpp"
 #include "subdomain_solver/make/expression.hpp"
@@ -19,6 +20,15 @@ VectorField field_of(const std::vector<std::string>& texts, int dim, const std::
   VectorField field;
   for (int i = 0; i < dim; ++i) field[i] = expression(texts[i], where);
   return field;
+}
+
+double start_value(const ScalarField& field, const std::array<double, 3>& at, int dim,
+                   const std::string& where) {
+  const double value = field(at, 0.0);
+  if (std::isfinite(value)) return value;
+  throw InputError(fmt::format("has no value at ({:g}) m",
+                               fmt::join(at.data(), at.data() + dim, ", ")),
+                   where, "Give an expression with a value at every node of the body.");
 }
 
 std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
@@ -109,7 +119,8 @@ Motion initial_motion(const BodySpec& spec, const Place& place, const FeModel& m
     if (texts.empty()) return;
     const VectorField field = field_of(texts, mesh.dim, place.where(key));
     for (std::size_t k = 0; k < to.size(); ++k)
-      to[k] += field[k % dim](position_of(mesh, static_cast<std::int32_t>(k / dim)), 0.0);
+      to[k] += start_value(field[k % dim], position_of(mesh, static_cast<std::int32_t>(k / dim)),
+                           mesh.dim, place.where(key));
   };
   if (spec.initial.velocity.size() == dim) {
     for (std::size_t k = 0; k < motion.v.size(); ++k) motion.v[k] = spec.initial.velocity[k % dim];

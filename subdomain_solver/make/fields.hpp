@@ -15,6 +15,10 @@ namespace abut {
 /// One expression per dimension, read. Throws InputError.
 VectorField field_of(const std::vector<std::string>& texts, int dim, const std::string& where);
 
+/// The value of a field of the start. Throws InputError where it has none: `where`, the expression.
+double start_value(const ScalarField& field, const std::array<double, 3>& at, int dim,
+                   const std::string& where);
+
 /// [m] reference position of a node.
 std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node);
 

@@ -150,7 +150,9 @@ std::optional<Failed> RigidTool::go_to(double time, const Load& mean) {
     const double place = way_[i](time);
     if (!std::isfinite(place)) {
       return Failed{Failed::Cause::non_finite, time,
-                    "the way of the tool has no value: check its expression"};
+                    fmt::format("model.rigid_tool.way[{}] has no value at {:g} s: give an "
+                                "expression with one at all times of the run",
+                                i, time)};
     }
     const double moved = place - state_.place[i];
     state_.work -= mean.force[i] * moved;
@@ -165,7 +167,9 @@ std::optional<Failed> RigidTool::turn_to(double time, const Load& mean) {
   const double length = time - state_.time, angle = turn_->angle(time);
   if (!std::isfinite(angle)) {
     return Failed{Failed::Cause::non_finite, time,
-                  "the angle of the tool has no value: check its expression"};
+                  fmt::format("model.rigid_tool.turn.angle has no value at {:g} s: give an "
+                              "expression with one at all times of the run",
+                              time)};
   }
   const double turn = std::abs(angle - state_.angle);
   if (length > 0.0 && turn > most_tool_turn) {
@@ -228,7 +232,7 @@ std::optional<Failed> RigidTool::pass(const PassiveStep& step, PassiveReply& rep
   std::size_t pressed = 0;
   for (const std::vector<std::int32_t>& points : step.pressed) pressed += points.size() * dim;
   reply.compliance.assign(pressed * pressed, 0.0);
-  reply.bulge = 0.0;
+  reply.bulge = reply.held = 0.0;
   reply.ports.resize(description_.ports.size());
   for (std::size_t p = 0; p < reply.ports.size(); ++p) {
     const std::size_t count = description_.ports[p].geometry.points.size();

@@ -59,7 +59,7 @@ std::optional<Failed> RigidWall::leave(double, double& lost) {
 std::optional<Failed> RigidWall::pass(const PassiveStep& step, PassiveReply& reply) {
   reply.ports = {{{0.0}, {0.0}}};
   reply.compliance.assign(step.pressed.empty() ? 0 : step.pressed[0].size(), 0.0);
-  reply.bulge = 0.0;
+  reply.bulge = reply.held = 0.0;
   return std::nullopt;
 }
 

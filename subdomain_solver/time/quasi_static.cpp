@@ -248,14 +248,16 @@ void QuasiStatic::stabilising_force(const Motion& motion, Vector& out) const {
   if (stabilisation_) free_.add(stabilisation_->held(motion), out);
 }
 
-void QuasiStatic::tell_held(const Vector& force, std::span<const double> gone,
-                            const Vector& acting, Motion& motion) {
-  if (!stabilisation_) return;
+double QuasiStatic::tell_held(const Vector& force, std::span<const double> gone,
+                              const Vector& acting, Motion& motion) {
+  if (!stabilisation_) return 0.0;
   Vector held, way, loads;
   free_.pick(force, held);
   free_.pick(Eigen::Map<const Vector>(gone.data(), static_cast<Eigen::Index>(gone.size())), way);
   free_.pick(acting, loads);
   stabilisation_->tell(held, way, loads.lpNorm<1>(), motion);
+  constexpr double least = 1.0e-6;  // where nothing is allowed
+  return Stabilisation::told(motion).share / std::max(least, stabilisation_->at_most());
 }
 
 /// Puts down what held the loose motions in a step.

@@ -46,9 +46,10 @@ class QuasiStatic final : public Integrator {
   /// [N] (dofs) with which it held the body at the end of the last step.
   void stabilising_force(const Motion& motion, Vector& out) const;
   /// Of a passive step: forces [N] (dofs) that held a body that is stabilised, how far it went [m]
-  /// (dofs), and what acted on it [N] (dofs).
-  void tell_held(const Vector& force, std::span<const double> gone, const Vector& acting,
-                 Motion& motion);
+  /// (dofs), and what acted on it [N] (dofs). Returns the part of the forces on the body that this
+  /// bore, over what is allowed at the end of a run; 0 of one that is not stabilised.
+  double tell_held(const Vector& force, std::span<const double> gone, const Vector& acting,
+                   Motion& motion);
   /// [N] (k) of what acts, along the loose motions, in the last step; of what is stabilised
   /// nothing.
   std::span<const double> unbalanced() const {

@@ -165,7 +165,7 @@ class StarBody : public Subdomain, private PassiveForm {
         reply.compliance[i * values + j] =
             star_.compliance(rows[i / 3], rows[j / 3], asked_->length());
     reply.record = record(asked_->end);
-    reply.bulge = 0.0;
+    reply.bulge = reply.held = 0.0;
   }
   BodyRecord record(double time) const {
     BodyRecord told;

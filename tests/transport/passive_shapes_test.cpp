@@ -46,6 +46,7 @@ struct Talk {
       reply.record.members.push_back(
           {{dice.value(), dice.value(), dice.value(), dice.value()}, dice.values(index(body.dim))});
     reply.bulge = dice.coin() ? 0.0 : 0.5 + dice.value();
+    reply.held = dice.coin() ? 0.0 : 0.5 + dice.value();
   }
 
   Dice dice;

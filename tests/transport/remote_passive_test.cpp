@@ -52,7 +52,7 @@ std::vector<double> numbers_of(const PassiveReply& reply) {
   }
   const Energy& energy = reply.record.energy;
   for (const double one : {reply.record.time, energy.kinetic, energy.stored, energy.dissipated,
-                           energy.external_work, reply.bulge})
+                           energy.external_work, reply.bulge, reply.held})
     all.push_back(one);
   all.insert(all.end(), reply.record.momentum.begin(), reply.record.momentum.end());
   return all;

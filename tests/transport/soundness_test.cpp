@@ -340,6 +340,7 @@ TEST(Soundness, APassiveReplyChangedAtRandomIsRefusedOrWhole) {
   for (std::size_t k = 0; k < 6; ++k) reply.compliance[7 * k] = 1.0;
   reply.record = {1.2, Energy{1.0, 0.0, 0.0, 0.0}, {0, 0, 2}, {}, {}, {293.0}};
   reply.bulge = 0.001;
+  reply.held = 0.5;
   v1::PassiveStepped sound;
   encode(reply, sound);
   int refused = 0;
@@ -364,6 +365,7 @@ TEST(Soundness, APassiveReplyChangedAtRandomIsRefusedOrWhole) {
     EXPECT_EQ(got.record.momentum.size(), 3u);
     EXPECT_TRUE(std::isfinite(got.record.energy.total() * got.record.energy.total()));
     EXPECT_GE(got.bulge, 0.0);
+    EXPECT_GE(got.held, 0.0);
     if (testing::Test::HasFailure()) return;
   }
   EXPECT_GT(refused, 5'000);  // the changes are not all harmless
