@@ -35,12 +35,17 @@ constexpr double hardly_held = 0.5;
 /// They are held so loosely that they should go this far, in parts of the farthest step. What
 /// drifts along a way on which nothing else holds it would go farther in vain.
 constexpr double settling_way = 0.5;
-constexpr int loosest = 6;
+constexpr int loosest = 10;
 /// Steps are in vain that leave more than this share of what held. Slender bodies are softer by far
 /// than what holds them, so each lets the next one hold four times as loosely, as long as that goes
 /// no farther than this part of the shortest edge. Settling ends after so many more in a row.
 constexpr double in_vain = 0.9, most_way = 0.5;
 constexpr int most_vain_steps = 4;
+/// A step after which so much more is out of balance has lost what presses: it is taken back where
+/// it went far. Where steps of one looseness were refused, so many less loose ones let it be tried
+/// again.
+constexpr double worse = 10.0;
+constexpr int well_to_loosen = 3;
 /// Of a step: ends that are nearer are the same.
 constexpr double same_time = 1.0e-9;
 
@@ -184,7 +189,7 @@ void PassiveWay::settle(double begin, double end, bool lenient) {
   farthest_ = std::max(farthest_, left);
   const double way = most_way * surfaces_->shortest_edge();
   double least = left;
-  int most = loosest, vain = 0, further = 0;
+  int most = loosest, vain = 0, further = 0, well = 0;
   for (int k = 0; k < most_settling_steps && vain < most_vain_steps; ++k) {
     if (left <= settled * farthest_ && step_->held() <= hardly_held) return;
     const double free = std::log2(settling_way * farthest_ / left) / 2.0;
@@ -195,11 +200,19 @@ void PassiveWay::settle(double begin, double end, bool lenient) {
     bodies_.save_all();
     if (!step_->settle(begin, end, looser, lenient, ledger_)) {
       bodies_.restore_all();
-      most = looser - 1;
+      most = looser - 1, well = 0;
       if (most < 0) break;
       continue;
     }
-    left = std::ldexp(step_->farthest(), -2 * looser);
+    const double now = std::ldexp(step_->farthest(), -2 * looser);
+    if (now > worse * left && step_->farthest() > std::max(way, farthest_)) {
+      bodies_.restore_all();
+      most = looser - 1, well = 0;
+      if (most < 0) break;
+      continue;
+    }
+    if (looser == most && most < loosest && ++well == well_to_loosen) ++most, well = 0;
+    left = now;
     if (left <= in_vain * least)
       vain = 0;
     else if (looser == before + further && looser < most)
