@@ -154,6 +154,7 @@ std::optional<CommonStep::Refusal> CommonStep::take(double begin, double end, bo
   near_.find_on_ways(from_, to_, rows_);
   impacts_.aim(rows_, start_, velocities_, ties_);
   if (std::optional<Refusal> refused = iterate()) return refused;
+  if (farthest_of(tried_) > most_way_) return Refusal::path;
   return accept(lenient, ledger);
 }
 
@@ -186,19 +187,14 @@ std::string CommonStep::driven() const {
   return {};
 }
 
-double CommonStep::farthest() const {
-  double most = 0.0;
-  for (const PassiveReply& reply : replies_)
-    for (const PassiveReply::Port& port : reply.ports)
-      for (const double moved : port.displacement) most = std::max(most, std::abs(moved));
-  return most;
-}
-
-bool CommonStep::settle(double begin, double end, int looser, bool lenient, PassiveLedger& ledger) {
+bool CommonStep::settle(double begin, double end, int looser, double most_way, bool lenient,
+                        PassiveLedger& ledger) {
   std::vector<DistanceRow> rows = rows_;
   looser_ = looser;
+  most_way_ = most_way;
   const bool taken = !take(begin, end, lenient, ledger);
   looser_ = 0;
+  most_way_ = std::numeric_limits<double>::infinity();
   if (taken) return true;
   rows_ = std::move(rows);
   return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -42,8 +43,10 @@ class CommonStep {
   std::optional<Refusal> take(double begin, double end, bool lenient, PassiveLedger& ledger);
   /// Of bodies without inertia, after a step that was taken: the same once more, from where they
   /// are and were saved, so that what held them as wholes in it lets go; they are held by
-  /// 4^-looser of it. False: restore them; the step is as it was.
-  bool settle(double begin, double end, int looser, bool lenient, PassiveLedger& ledger);
+  /// 4^-looser of it. False: restore them; the step is as it was. So it is where a point would
+  /// move farther than `most_way` [m]: what presses was lost then.
+  bool settle(double begin, double end, int looser, double most_way, bool lenient,
+              PassiveLedger& ledger);
   /// Of the last step that was refused, for people.
   const std::string& why() const { return why_; }
   /// What supports and ways drove onto each other in it, for people, with a remedy; empty: nothing.
@@ -101,6 +104,7 @@ class CommonStep {
   bool is_blow(const DistanceRow& row, double& approach) const;
   void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
+  static double farthest_of(std::span<const PassiveReply> replies);  // [m]
   static double own_energy(const BodyRecord& record);              // [J] of a body
   static double motion_of(std::span<const PassiveReply> replies);  // [J] of all bodies together
   double length() const { return step_.end - step_.begin; }
@@ -128,6 +132,7 @@ class CommonStep {
   double returned_ = 0.0;                             // [J] and by friction that took too much
   int softer_ = 0;                                    // solves of these rows so far
   int looser_ = 0;                                    // than in a first step bodies are held
+  double most_way_ = std::numeric_limits<double>::infinity();  // [m] of a point
   double fine_ = 1.0;                                 // times what fits, in this step
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
   std::map<std::int32_t, double> owed_;               // [J] to rows, by their first points

@@ -41,8 +41,8 @@ constexpr int loosest = 10;
 /// no farther than this part of the shortest edge. Settling ends after so many more in a row.
 constexpr double in_vain = 0.9, most_way = 0.5;
 constexpr int most_vain_steps = 4;
-/// A step after which so much more is out of balance has lost what presses: it is taken back where
-/// it went far. Where steps of one looseness were refused, so many less loose ones let it be tried
+/// A step after which so much more is out of balance has lost what presses: it is refused where it
+/// goes far. Where steps of one looseness were refused, so many less loose ones let it be tried
 /// again.
 constexpr double worse = 10.0;
 constexpr int well_to_loosen = 3;
@@ -198,21 +198,15 @@ void PassiveWay::settle(double begin, double end, bool lenient) {
     while (looser < std::min(before + further, most) && std::ldexp(left, 2 * looser + 2) < way)
       ++looser;
     bodies_.save_all();
-    if (!step_->settle(begin, end, looser, lenient, ledger_)) {
-      bodies_.restore_all();
-      most = looser - 1, well = 0;
-      if (most < 0) break;
-      continue;
-    }
-    const double now = std::ldexp(step_->farthest(), -2 * looser);
-    if (now > worse * left && step_->farthest() > std::max(way, farthest_)) {
+    const double far = std::max({std::ldexp(worse * left, 2 * looser), way, farthest_});
+    if (!step_->settle(begin, end, looser, far, lenient, ledger_)) {
       bodies_.restore_all();
       most = looser - 1, well = 0;
       if (most < 0) break;
       continue;
     }
     if (looser == most && most < loosest && ++well == well_to_loosen) ++most, well = 0;
-    left = now;
+    left = std::ldexp(step_->farthest(), -2 * looser);
     if (left <= in_vain * least)
       vain = 0;
     else if (looser == before + further && looser < most)

@@ -130,6 +130,16 @@ double CommonStep::speed_of_loads(const DistanceRow& row) const {
   return steps_of_loads * loads * length();
 }
 
+double CommonStep::farthest() const { return farthest_of(replies_); }
+
+double CommonStep::farthest_of(std::span<const PassiveReply> replies) {
+  double most = 0.0;
+  for (const PassiveReply& reply : replies)
+    for (const PassiveReply::Port& port : reply.ports)
+      for (const double moved : port.displacement) most = std::max(most, std::abs(moved));
+  return most;
+}
+
 double CommonStep::held() const {
   double most = 0.0;
   for (const PassiveReply& reply : replies_) most = std::max(most, reply.held);
