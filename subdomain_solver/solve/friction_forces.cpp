@@ -17,6 +17,9 @@ constexpr int most_newton = 30, first_newton = 10;
 constexpr double friction_settled = 1.0e-14, accurate = 1.0e-11;
 /// The same of rows that say the same: gaps are differences of places, and differ by rounding.
 constexpr double rounded_gaps = 1.0e-8;
+/// Cubes of unknowns that a call factors: some seconds. What takes more is hardly ever found, and
+/// whoever asks has other ways.
+constexpr double most_factored = 2.0e10;
 /// The same: steps of Newton's method after which the next would be rounding.
 constexpr double friction_converged = 1.0e-9;
 /// Of the largest compliance: what rows that say the same give way by, each for itself.
@@ -85,6 +88,9 @@ class Linearised {
       z.setZero();
       return true;
     }
+    const auto size = static_cast<double>(n);
+    b_.factored += size * size * size;
+    if (b_.factored > most_factored) return false;
     b_.matrix.resize(n, n);
     b_.rest.resize(n);
     Eigen::Index at = 0;
@@ -321,6 +327,7 @@ RowState row_state(const FrictionRow& row, const Vector& force) {
 bool friction_forces(const Eigen::MatrixXd& a, const Vector& b, std::span<const FrictionRow> rows,
                      Vector& force, FrictionBuffers& buffers) {
   if (!b.allFinite() || !a.allFinite()) return false;
+  buffers.factored = 0.0;
   if (force.size() != b.size()) force.setZero(b.size());
   if (b.size() == 0) return true;
   if (sweep(a, b, rows, first_sweeps, force, buffers)) return true;

@@ -25,6 +25,7 @@ struct FrictionBuffers {
   Vector slip, step, rest, trial, best, path, shifted;
   DenseFactors factors{Factoring::lu};
   std::size_t solutions = 0;  // of linear equations by all calls so far
+  double factored = 0.0;      // in this call, cubes of unknowns
 };
 
 /// The forces z = (lambda, tau) of rows with Coulomb's friction, w = b + A z:
