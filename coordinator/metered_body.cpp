@@ -78,31 +78,32 @@ std::vector<FieldValues> MeteredBody::fields() {
 
 // ---- passive form -------------------------------------------------------------------------------
 
-PassiveForm* MeteredBody::passive() {
-  PassiveForm* form = body_.passive();
-  return spans_ == nullptr || form == nullptr ? form : &passive_;
-}
+PassiveForm* MeteredBody::passive() { return body_.passive() == nullptr ? nullptr : &passive_; }
 
 double MeteredBody::Passive::enter() {
+  body_.meter_.count(body_.number_);
   return body_.told("passive enter", [this] { return form().enter(); });
 }
 
 Outcome MeteredBody::Passive::leave(double time, double& lost) {
+  body_.meter_.count(body_.number_);
   return body_.told("passive leave", [&] { return form().leave(time, lost); });
 }
 
 void MeteredBody::Passive::start(const PassiveStep& step) {
-  body_.spans_->asked(body_.number_);
+  body_.meter_.count(body_.number_);
+  if (body_.spans_ != nullptr) body_.spans_->asked(body_.number_);
   form().start(step);
 }
 
 Outcome MeteredBody::Passive::finish(PassiveReply& reply) {
   Outcome outcome = body_.heard([&] { return form().finish(reply); });
-  body_.spans_->answered(body_.number_, "passive step", 0.0);
+  if (body_.spans_ != nullptr) body_.spans_->answered(body_.number_, "passive step", 0.0);
   return outcome;
 }
 
 double MeteredBody::Passive::damp(double joules) {
+  body_.meter_.count(body_.number_);
   return body_.told("passive damp", [&] { return form().damp(joules); });
 }
 

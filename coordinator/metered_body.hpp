@@ -14,8 +14,8 @@
 
 namespace abut {
 
-/// A body, and what it is waited for. Steps of its passive form are not metered; a file of spans is
-/// told of these as well, and of all that takes time.
+/// A body, and what it is waited for. Requests of its passive form are counted and not timed, as
+/// replies do not say what they took; a file of spans is told of all that takes time.
 class MeteredBody final : public Subdomain {
  public:
   /// All must outlive it; `number`: of the body among those of the meter; `spans` may be null.

@@ -41,6 +41,11 @@ class Bodies {
   }
   /// From now on describe() tells this of a body: its facets look to the other side.
   void tell_of(int body, Description told) { told_.insert_or_assign(body, std::move(told)); }
+  /// The passive form of a body that is about to get one request of it, which counts.
+  PassiveForm& ask_passively(int body) {
+    ++exchanges_;
+    return *subdomains_[body]->passive();
+  }
   const Port& port(const Side& side) const { return describe(side.body).ports[side.port]; }
   Advance& request(int body) { return requests_[body]; }
   const Advance& request(int body) const { return requests_[body]; }

@@ -308,7 +308,7 @@ std::optional<Failed> CommonStep::advance(bool all) {
     asked.looser = looser_;
     asked.pressed = points_.list(b, bodies_.describe(b).ports.size());
     if (length() > 0.0) ties_.add_points(b, asked.pressed);
-    bodies_[b].passive()->start(asked);
+    bodies_.ask_passively(b).start(asked);
     moved.push_back(b);
   }
   std::optional<Failed> first;

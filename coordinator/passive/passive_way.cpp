@@ -97,7 +97,7 @@ std::optional<Failed> PassiveWay::enter(double time, bool unanswered) {
   if (unanswered) ++ledger_.unanswered;
   make();
   for (int b = 0; b < bodies_.count(); ++b) {
-    const double lost = bodies_[b].passive()->enter();
+    const double lost = bodies_.ask_passively(b).enter();
     ledger_.switched += lost;
     if (lost != 0.0) PassiveLedger::add(ledger_.taken, b, lost);
   }
@@ -253,7 +253,7 @@ bool PassiveWay::hold_rigid() {
   level_ = most_halvings / 2;
   for (int b = 0; b < bodies_.count(); ++b) {
     if (!std::isfinite(bodies_.describe(b).mass)) continue;
-    const double taken = bodies_[b].passive()->damp(step_->record(b).energy.kinetic);
+    const double taken = bodies_.ask_passively(b).damp(step_->record(b).energy.kinetic);
     ledger_.damped += taken;
     PassiveLedger::add(ledger_.taken, b, taken);
     step_->lower(b, taken);
@@ -278,7 +278,7 @@ std::vector<double> PassiveWay::repay(std::span<const int> bodies, double joules
       if (gives[k] != 0) shares[k] = left * energy_of(bodies[k]).kinetic / motion;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       if (!(shares[k] > 0.0)) continue;
-      const double given = bodies_[bodies[k]].passive()->damp(shares[k]);
+      const double given = bodies_.ask_passively(bodies[k]).damp(shares[k]);
       gives[k] = given >= most_of_share * shares[k];
       energy_of(bodies[k]).kinetic -= given;
       gave[k] += given;
@@ -292,7 +292,7 @@ bool PassiveWay::leave(double time, double may_lose) {
   bodies_.save_all();
   std::vector<double> lost(index(bodies_.count()), 0.0);
   for (int b = 0; b < bodies_.count(); ++b) {
-    const Outcome outcome = bodies_[b].passive()->leave(time, lost[index(b)]);
+    const Outcome outcome = bodies_.ask_passively(b).leave(time, lost[index(b)]);
     if (std::holds_alternative<Failed>(outcome)) {
       bodies_.restore_all();
       return false;

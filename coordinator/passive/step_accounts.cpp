@@ -60,7 +60,7 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     account += gained[index(b)];
     double taken = 0.0;
     if (account > 0.0 && gained[index(b)] > 0.0 && std::isfinite(bodies_.describe(b).mass))
-      taken = bodies_[b].passive()->damp(account);
+      taken = bodies_.ask_passively(b).damp(account);
     account -= taken;
     ledger.damped += taken;
     if (taken != 0.0) PassiveLedger::add(ledger.taken, b, taken);

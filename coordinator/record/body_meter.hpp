@@ -18,8 +18,11 @@ class BodyMeter {
   /// `computed` [s]: as the body tells it; no call of start() may be left without this.
   void finish(std::size_t body, double computed);
 
+  /// A request of which nobody tells what it takes.
+  void count(std::size_t body) { ++calls_[body]; }
+
   const std::vector<double>& waited_seconds() const { return waited_; }  // by body
-  const std::vector<std::int64_t>& calls() const { return calls_; }      // by body, answered
+  const std::vector<std::int64_t>& calls() const { return calls_; }      // by body
 
  private:
   std::size_t under_way_ = 0;

@@ -135,6 +135,9 @@ class OfRuns(Trace):
         self.assertEqual(names["passive window"], passive)
         for name in ("checkpoint", "state", "fields", "passive step", "records", "start", "end"):
             self.assertGreater(names[name], 0, name)
+        asked = sum(span["name"] in ("advance", "probe") or span["name"].startswith("passive ")
+                    for name, spans in tracks.items() if name != "coordinator" for span in spans)
+        self.assertEqual(asked, self.summary()["exchanges"])
 
     def test_a_trace_changes_nothing(self):
         plain = self.folder / "plain"
