@@ -146,8 +146,11 @@ std::vector<PortPair> BroadPhase::near(const Bodies& bodies, double time) {
     const PortResponse& reply = port_of(bodies, port.side);
     const std::size_t dim = index(bodies.port(port.side).geometry.dim);
     const double way = (reply.speed_bound + 0.5 * reply.acceleration_bound * time) * time;
-    boxes_.push_back(box_of(std::span(reply.lower).last(dim), std::span(reply.upper).last(dim), dim,
-                            0.5 * margin_ + way));
+    // A body that failed before its first record tells no box. Its pairs were told from where the
+    // attempt began, and nothing has moved from there since.
+    const std::size_t told = std::min(dim, reply.lower.size());
+    boxes_.push_back(box_of(std::span(reply.lower).last(told), std::span(reply.upper).last(told),
+                            dim, 0.5 * margin_ + way));
   }
   return overlapping();
 }

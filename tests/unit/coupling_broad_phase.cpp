@@ -95,6 +95,20 @@ TEST(BroadPhase, TellsNoPairThatIsJoined) {
   EXPECT_EQ(phase.near(*crowd.all, 0.0).size(), first.size() / 2);
 }
 
+/// Its box is not read from before what it told; all others are found as ever.
+TEST(BroadPhase, ABodyThatFailedBeforeItsFirstRecordIsNearNobody) {
+  const Crowd crowd(2, 12, 2.0, 1);  // all overlap
+  BroadPhase phase(*crowd.all, {});
+  std::set<std::pair<int, int>> expected;
+  for (int a = 0; a < 12; ++a)
+    for (int b = a + 1; b < 12; ++b)
+      if (a != 3 && b != 3 && crowd.meet(a, b, 10.0)) expected.insert({a, b});
+  PortResponse& failed = crowd.all->response(3).ports[0];
+  failed.lower.clear();
+  failed.upper.clear();
+  EXPECT_EQ(bodies_of(phase.near(*crowd.all, 10.0)), expected);
+}
+
 /// A row of bodies sweeps in two levels: each comes before both of its neighbours, or after.
 TEST(BroadPhase, NeighboursInARowAlternate) {
   const Crowd crowd(2, 64, 2.0, 1);  // all overlap
