@@ -28,19 +28,28 @@ bool LooseSolver::factor(const SparseMatrix& matrix) {
   closing.topRows(k) = -answers_(held_, Eigen::all);
   closing.topLeftCorner(k, k).diagonal().array() += 1.0;
   closing.bottomRows(k) = -(motions_.transpose() * answers_) / static_cast<double>(n);
-  closing.bottomRightCorner(k, k).diagonal().array() -= give_of(matrix);
+  closing.bottomRightCorner(k, k).diagonal().array() -= give_of(closing);
   closing_.compute(closing);
   return true;
 }
 
 /// A body that is pressed falls over by itself: springs below P / L do not hold it, and contact
 /// finds no forces in what gives way the wrong way round. What is solved for then has springs that
-/// do; the equations do not.
-double LooseSolver::give_of(const SparseMatrix& matrix) const {
+/// do; the equations do not. `rigid`: the closing matrix of what does not give way.
+double LooseSolver::give_of(const Eigen::MatrixXd& rigid) {
+  falling_.stiffness = 0.0;
   if (give_ == 0.0 || !holds_up_) return give_;
-  const Eigen::MatrixXd own = motions_.transpose() * (matrix * motions_);
-  const double falls = -symmetric_eigenvalues(0.5 * (own + own.transpose()))(0);
-  return falls > 0.0 ? std::min(give_, 0.5 / falls) : give_;
+  const Eigen::Index k = motions_.cols();
+  // m = -S a: S (k, k) [N/m] answers along the motions while the rest of the body is in balance,
+  // which a turned body that is deformed is not, so that R^T K R / n^2 alone may look firm.
+  Eigen::MatrixXd places = Eigen::MatrixXd::Zero(2 * k, k);
+  places.bottomRows(k).diagonal().setOnes();
+  const Eigen::MatrixXd stands = -solve_square(rigid, places).bottomRows(k);
+  if (!stands.allFinite()) return give_;
+  const EigenPairs own = symmetric_eigen(0.5 * (stands + stands.transpose()));
+  if (own.values(0) < 0.0) falling_ = {-own.values(0), own.vectors.col(0)};
+  const double stiffest = std::max(stiffer_, 2.0 * falling_.stiffness);
+  return stiffest > 0.0 ? std::min(give_, 1.0 / stiffest) : give_;
 }
 
 bool LooseSolver::solve(const Vector& b, Vector& x) {

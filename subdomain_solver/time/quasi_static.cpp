@@ -12,6 +12,8 @@ namespace {
 
 /// A part solved in fewer iterations may be followed by one of twice its length.
 constexpr int few_iterations = 5;
+/// Times in a step that springs are stiffened.
+constexpr int most_held_up = 4;
 
 /// Of a step's work, in parts of its largest force times its way, or what roundings make of that;
 /// and halvings of the step in which a kink of the force, where material begins to yield, is closed
@@ -318,6 +320,19 @@ NewtonReport QuasiStatic::part(Motion& motion, double end, Contact* contact) {
   return report;
 }
 
+/// True: springs that the body overcame, so that it fell from one turn of contact to the next, are
+/// stiffer now, along the motion that fell.
+bool QuasiStatic::holds_what_falls() {
+  if (!stabilisation_ || held_up_ >= most_held_up) return false;
+  const Falling& falling = loose_solver_->falling();
+  const double held = stabilisation_->stiffness(falling.along);
+  if (!(falling.stiffness > held)) return false;
+  ++held_up_;
+  stabilisation_->stiffen(falling.along, 2.0 * falling.stiffness - held);
+  loose_solver_->stiffen(2.0 * falling.stiffness);
+  return true;
+}
+
 std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) {
   before_ = motion;
   const double smallest = std::ldexp(dt, -options_.most_halvings);
@@ -326,6 +341,8 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
   if (stabilisation_) {
     free_.pick(view(before_.q), buffers_.x);
     stabilisation_->begin(buffers_.x);
+    held_up_ = 0;
+    loose_solver_->stiffen(0.0);
   }
   if (carries()) {
     from = place_of(before_);
@@ -340,6 +357,12 @@ std::optional<Failed> QuasiStatic::step(Motion& motion, double time, double dt) 
       done = last ? dt : done + length;
       if (report.iterations <= few_iterations) length *= 2.0;
       length = std::min(length, dt - done);
+      continue;
+    }
+    if (report.end == NewtonReport::End::not_converged && holds_what_falls()) {
+      motion = before_;
+      done = 0.0;
+      length = dt;
       continue;
     }
     length *= 0.5;

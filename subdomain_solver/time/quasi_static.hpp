@@ -77,6 +77,7 @@ class QuasiStatic final : public Integrator {
   std::unique_ptr<LinearSolver> with_motions(std::unique_ptr<LinearSolver> solver);
   Vector place_of(const Motion& motion) const;
   bool carries() const { return loose_.cols() > 0; }
+  bool holds_what_falls();
   void settle(Motion& motion);
 
   const Problem& problem_;
@@ -90,6 +91,7 @@ class QuasiStatic final : public Integrator {
   ContactTurns contact_;
   SparseMatrix matrix_;  // of the free coordinates
   bool factored_ = false;
+  int held_up_ = 0;  // times that springs have been stiffened in this step
   Buffers buffers_;
   Motion before_;  // the step
 };

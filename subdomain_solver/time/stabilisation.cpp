@@ -12,11 +12,11 @@ enum At : std::size_t { force, share, share_most, work, first };
 }  // namespace
 
 void Stabilisation::add_force(const Vector& x, Vector& balance) const {
-  balance += spread(stiffness_ * (place_of(x) - anchor_));
+  balance += spread(hold(place_of(x) - anchor_));
 }
 
 void Stabilisation::settle(const Vector& x, double loads, Motion& motion) const {
-  const Vector gone = place_of(x) - anchor_, m = stiffness_ * gone;
+  const Vector gone = place_of(x) - anchor_, m = hold(gone);
   tell(m, m.dot(gone), loads, motion);
 }
 

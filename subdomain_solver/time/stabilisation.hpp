@@ -17,12 +17,27 @@ class Stabilisation {
   /// `motions`: R (n, k) of the free coordinates, columns of length sqrt(n) at right angles;
   /// `stiffness`: s [N/m]; `at_most`: of all that presses on the body, that it may bear at the end.
   Stabilisation(Eigen::MatrixXd motions, double stiffness, double at_most)
-      : motions_(std::move(motions)), stiffness_(stiffness), at_most_(at_most) {}
+      : motions_(std::move(motions)),
+        stiffness_(stiffness),
+        at_most_(at_most),
+        stiffer_(Eigen::MatrixXd::Zero(motions_.cols(), motions_.cols())) {}
 
   double at_most() const { return at_most_; }
 
   /// A step begins at x [m] (n).
-  void begin(const Vector& x) { anchor_ = place_of(x); }
+  void begin(const Vector& x) {
+    anchor_ = place_of(x);
+    stiffer_.setZero();
+  }
+  /// Holds a motion along which the body falls, R w with w (k) of length 1, by so much more [N/m]
+  /// until the step ends.
+  void stiffen(const Vector& along, double stiffness) {
+    stiffer_ += stiffness * along * along.transpose();
+  }
+  /// [N/m] with which it holds that motion now.
+  double stiffness(const Vector& along) const {
+    return along.size() > 0 ? stiffness_ + along.dot(stiffer_ * along) : stiffness_;
+  }
   /// Adds C m to a balance (n), at x.
   void add_force(const Vector& x, Vector& balance) const;
   /// A step ends at x, where forces [N] of these magnitudes act on the body, summed over all
@@ -45,6 +60,7 @@ class Stabilisation {
 
  private:
   void tell(const Vector& m, double done, double loads, Motion& motion) const;
+  Vector hold(const Vector& gone) const { return stiffness_ * gone + stiffer_ * gone; }
   Vector place_of(const Vector& x) const {
     return motions_.transpose() * x / static_cast<double>(x.size());
   }
@@ -54,7 +70,8 @@ class Stabilisation {
 
   Eigen::MatrixXd motions_;
   double stiffness_, at_most_;
-  Vector anchor_;  // [m] (k)
+  Vector anchor_;            // [m] (k)
+  Eigen::MatrixXd stiffer_;  // [N/m] (k, k) in this step
 };
 
 }  // namespace abut
