@@ -27,7 +27,6 @@ namespace abut {
 
 namespace {
 
-constexpr int most_halvings = 20;
 /// Pairs of a scene where everything may touch everything are joined when they may meet within so
 /// many: contact begins to look at its joints within the next one or two.
 constexpr double watched_windows = 4.0;
@@ -356,7 +355,7 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
     narrator_.warning(window.begin, "", text + "; accepted as the scene says");
     return {};
   }
-  if (policy == OnNonconvergence::halve && halvings_ < most_halvings) {
+  if (halvings_ < most_halvings()) {
     ++halvings_;
     narrator_.warning(window.begin, "", text + "; the window is halved");
     return {Verdict::cut, window.begin + 0.5 * window.length(), {}};

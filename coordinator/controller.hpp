@@ -141,6 +141,7 @@ class Controller {
   void look_for_passed();
   void judge(int body);
   bool may_go_passively() const;
+  int most_halvings() const;
   bool may_refuse() const;
   std::string folded();
   bool must_go_passively(const TimeWindow& window);
@@ -191,10 +192,9 @@ class Controller {
   std::vector<InterfaceReport> reports_;
   std::vector<PairReport> pairs_;
   RunEnd end_;
-  bool resumed_ = false, staged_ = false;
+  bool resumed_ = false, staged_ = false, settles_ = false;  // settles: springs stabilise a body
   std::vector<std::optional<HandOver>> handed_;  // by body; empty: none is another one now
   std::optional<StageEvent> event_;  // none: time.end alone ends the stage
-  bool settles_ = false;  // springs stabilise a body
 };
 
 }  // namespace abut

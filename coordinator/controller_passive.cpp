@@ -47,6 +47,15 @@ bool Controller::may_go_passively() const {
          scene_.schwarz.on_nonconvergence == OnNonconvergence::passive;
 }
 
+/// Of a window that has not converged, before it fails: as the scene says, or where statics would
+/// go passively, which is right to some hundredths alone, and tells no energies. Bodies without
+/// inertia that have no answer have halved the step by themselves.
+int Controller::most_halvings() const {
+  constexpr int asked_for = 20, of_statics = 4;
+  if (scene_.schwarz.on_nonconvergence == OnNonconvergence::halve) return asked_for;
+  return may_go_passively() && passive_.statics() && !attempt_.failed ? of_statics : 0;
+}
+
 /// Schemes of finite strain make energy in steps that are long for a body's waves and turns: what
 /// would end the run is gone the other way.
 std::optional<Failed> Controller::made_by_themselves(const TimeWindow& window) const {
