@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "surface/closest_point.hpp"
+#include "surface/far_sides.hpp"
 
 namespace abut {
 namespace {
@@ -68,6 +69,7 @@ void point_rows(const PosedSurface& k, std::span<const std::int32_t> nodes, cons
     const ClosestSearch search{options.reach, nodal(k, buffers.k_normals, node), options.facing};
     const std::optional<SurfacePoint> foot = closest_point(n, tree, x, search);
     if (!foot || !is_over(corners(n, foot->facet), x, *foot, options.rim)) continue;
+    if (sees_through(x, n, tree, foot->facet, options.thinnest)) continue;
     add_row(k, n, node, *foot, normal_at(n, *foot, options, buffers.n_normals),
             buffers.weights[node], rows);
   }

@@ -24,6 +24,9 @@ struct PointRowOptions {
   // zero, so that a node on N's rim does not come and go with round-off.
   double rim = 0.02;
   RowNormal normal = RowNormal::facet;
+  // [m] nodes further behind N are left out where they see its facet through N (far_sides.hpp); of
+  // poses in which bodies do not overlap by more than they are thick
+  double thinnest = std::numeric_limits<double>::infinity();
 };
 
 /// Memory that calls of point_rows use again; its contents mean nothing between them.

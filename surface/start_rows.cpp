@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "surface/far_sides.hpp"
 #include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
 #include "surface/point_rows.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 /// Facet sizes that a node may lie behind a surface and still be seen.
 constexpr double reach = 2.0;
+/// Of the size of facets: bodies are not thinner.
+constexpr double thinnest = 1.0e-3;
 
 /// Half of sharp_edge: the angle between a facet and the normal of its node where two such meet.
 const double smooth = std::cos(0.5 * sharp_edge);
@@ -53,6 +56,7 @@ SurfaceRows node_rows(const StartSurface& one, const StartSurface& other) {
   std::iota(nodes.begin(), nodes.end(), 0);
   PointRowOptions options;
   options.reach = reach * facet_size(one, other);
+  options.thinnest = thinnest * one.spacing;
   BoxTree tree;
   build(tree, other.surface, options.reach);
   PointRowBuffers buffers;
@@ -67,6 +71,7 @@ SurfaceRows average_rows(const StartSurface& one, const StartSurface& other) {
   build(its, other.surface, facet_size(one, other));
   std::vector<FacetPair> pairs;
   overlapping_pairs(own, its, pairs);
+  FarSides().leave_out(one.surface, other.surface, thinnest * one.spacing, pairs);
   MortarOptions options;
   options.reach = one.spacing;
   MeetingCorners corners;

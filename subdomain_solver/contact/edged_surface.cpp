@@ -73,15 +73,14 @@ EdgesNear EdgedSurface::near(std::span<const double> pose, const PosedSurface& o
 }
 
 void EdgedSurface::join(std::span<const double> pose, const PosedSurface& other,
-                        const BoxTree& tree, double way, const MeetingCorners& corners,
-                        SurfaceRows& rows) {
+                        const BoxTree& tree, double way, const Drops& drops, SurfaceRows& rows) {
   PosedSurface parts = pose_of(pose);
   parts.round = parts.round || other.round;  // a tool has no radius of its own
   options_.reach = longest_ + way;
   refit(tree_, parts, options_.reach);
   overlapping_pairs(tree_, tree, pairs_);
-  std::erase_if(pairs_, [this, &corners](const FacetPair& pair) {
-    return corners.drops({pair.n, pair.k / parts_});
+  std::erase_if(pairs_, [this, &drops](const FacetPair& pair) {
+    return drops({pair.n, pair.k / parts_});
   });
   mortar_rows(parts, other, pairs_, options_, buffers_, rows);
   mapped_.clear();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -9,7 +10,6 @@
 #include "contract/port.hpp"
 #include "surface/boxes.hpp"
 #include "surface/divided_surface.hpp"
-#include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
 
 namespace abut {
@@ -42,9 +42,11 @@ class EdgedSurface {
                  double reach);
   /// Rows of this surface's nodes against the other's facets, told as those of the other: T over
   /// its nodes, P over the points of this surface, normals out of this surface. `way`: [m] that the
-  /// two go in the substep. `corners`: of the other surface and this one.
+  /// two go in the substep. `drops`: of a facet of the other surface and one of this, whether these
+  /// have no rows.
+  using Drops = std::function<bool(const FacetPair&)>;
   void join(std::span<const double> pose, const PosedSurface& other, const BoxTree& tree,
-            double way, const MeetingCorners& corners, SurfaceRows& rows);
+            double way, const Drops& drops, SurfaceRows& rows);
 
  private:
   PosedSurface pose_of(std::span<const double> pose);

@@ -200,7 +200,10 @@ void SurfaceObstacle::place(double time) {
   motion_->interpolate(motion_->u, time, near_.values(), given_);
   for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = near_.points[v] + given_[v];
   for (std::size_t v = 0; yields() && v < zone_.size(); ++v) free_[zone_near_[v]] += memory_[v];
-  if (!corners_may_meet()) return;
+  if (corners_may_meet()) find_pose_before();
+}
+
+void SurfaceObstacle::find_pose_before() {
   before_.resize(given_.size());
   motion_->interpolate(motion_->u, begin_, near_.values(), before_);
   pose_before_ = free_;
@@ -244,16 +247,38 @@ void SurfaceObstacle::join_points(const PosedSurface& own, const PosedSurface& o
   point_rows(own, own_nodes_, other, tree_, options, point_buffers_, rows_);
 }
 
+/// Pairs that are behind each other by more than what bodies have gone since the begin are few:
+/// sides of thin bodies that look away from each other.
+void SurfaceObstacle::leave_out_far_sides(const PosedSurface& k, std::span<const double> begin,
+                                          const PosedSurface& n, double way) {
+  constexpr double thinnest = 1.0e-3;  // of a facet: bodies are not thinner
+  const double depth = thinnest * own_.spacing;
+  const bool any = std::ranges::any_of(pairs_, [&](const FacetPair& pair) {
+    return is_behind(k, n, pair, way + depth);
+  });
+  if (!corners_may_meet() && any) find_pose_before();
+  if (any)
+    far_sides_.leave_out(posed(k, begin), posed(n, pose_before_), depth, pairs_);
+  else
+    far_sides_.forget();
+}
+
 /// Rows of averages, and of single points where edges or corners of both meet [M.104].
 void SurfaceObstacle::join_averages(const PosedSurface& k, std::span<const double> begin,
                                     const PosedSurface& n, double way) {
-  if (!turned_ || !chosen_ || corners_may_meet()) overlapping_pairs(own_tree_, tree_, pairs_);
+  if (!turned_ || !chosen_ || corners_may_meet()) {
+    overlapping_pairs(own_tree_, tree_, pairs_);
+    leave_out_far_sides(k, begin, n, way);
+  }
   if (!chosen_) choose_side(k.points);
   if (corners_may_meet())
     corners_.find({k, posed(k, begin), &own_wedges_}, {n, posed(n, pose_before_), &wedges_}, pairs_,
                   {options_.facing, way});
   if (turned_) {
-    edges_.join(pose_, k, own_tree_, way, corners_, rows_);
+    const auto drops = [this](const FacetPair& pair) {
+      return corners_.drops(pair) || far_sides_.drops(pair);
+    };
+    edges_.join(pose_, k, own_tree_, way, drops, rows_);
   } else {
     averaged_.clear();
     std::ranges::remove_copy_if(pairs_, std::back_inserter(averaged_),

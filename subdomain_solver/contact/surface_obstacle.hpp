@@ -7,6 +7,7 @@
 #include "subdomain_solver/contact/near_surface.hpp"
 #include "subdomain_solver/interior.hpp"
 #include "surface/boxes.hpp"
+#include "surface/far_sides.hpp"
 #include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
 #include "surface/point_rows.hpp"
@@ -90,6 +91,9 @@ class SurfaceObstacle {
   void give_way(std::span<const double> reaction);
   void choose_side(std::span<const double> pose);
   bool corners_may_meet() const { return wedges_.any() && own_wedges_.any(); }
+  void find_pose_before();
+  void leave_out_far_sides(const PosedSurface& k, std::span<const double> begin,
+                           const PosedSurface& n, double way);
   void join_averages(const PosedSurface& k, std::span<const double> begin, const PosedSurface& n,
                      double way);
   void join_points(const PosedSurface& own, const PosedSurface& other);
@@ -105,6 +109,7 @@ class SurfaceObstacle {
   double reach_ = 0.0, travel_ = 0.0;  // [m] of a substep of no length; own way in this one
   EdgedSurface edges_, own_edges_;
   Wedges wedges_, own_wedges_;
+  FarSides far_sides_;
   MeetingCorners corners_;
   NearSurface near_;
   std::vector<std::int32_t> needed_;    // points that are to be in it

@@ -30,7 +30,7 @@ TEST(EdgedSurface, RowsNameNodesOfTheFinder) {
   BoxTree tree;
   build(tree, face.pose(), 1.0);
   SurfaceRows rows;
-  edged.join(partner.points, face.pose(), tree, 0.0, MeetingCorners(), rows);
+  edged.join(partner.points, face.pose(), tree, 0.0, [](const FacetPair&) { return false; }, rows);
   ASSERT_GT(rows.count(), face.nodes());
   for (int r = 0; r < rows.count(); ++r) {
     const std::int32_t node = rows.nodes[r];
