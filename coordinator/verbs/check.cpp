@@ -129,8 +129,11 @@ int check_verb(const CheckCommand& command) {
   check_programs(scene, document);
   Estimate estimate;
   {
-    const Placement here{nullptr, launch_local(scene, document)};
-    estimate = validate_all(scene, document, here, true).estimate;
+    Placement here{nullptr, {}};
+    in_units_of(scene, [&] {
+      here.bodies = launch_local(scene, document);
+      estimate = validate_all(scene, document, here, true).estimate;
+    });
     check_nothing_before(scene);
     const std::vector<const Description*> bodies = here.descriptions();
     const std::vector<std::optional<BodyFacts>> facts = local_facts(scene, document);

@@ -1,5 +1,8 @@
 #include "coordinator/verbs/placed_scene.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -7,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
+#include "base/unit_words.hpp"
 #include "coordinator/couple.hpp"
 #include "coordinator/external_body.hpp"
 #include "coordinator/frame_check.hpp"
@@ -112,6 +116,23 @@ Scene read_all_keys(const Document& document) {
   check_units(document);
   if (const std::optional<Document> stage = document.next_stage()) read_all_keys(*stage);
   return scene;
+}
+
+void in_units_of(const Scene& scene, const std::function<void()>& set_up) {
+  const std::map<std::string, std::string> words = declared_units(scene.units);
+  const auto told = [&words](const InputError& error) {
+    return InputError(quantities_in(words, error.what_is_wrong), error.where,
+                      quantities_in(words, error.remedy));
+  };
+  try {
+    set_up();
+  } catch (const InputErrorList& errors) {
+    std::vector<InputError> all;
+    std::ranges::transform(errors.all, std::back_inserter(all), told);
+    throw InputErrorList(std::move(all));
+  } catch (const InputError& error) {
+    throw told(error);
+  }
 }
 
 Validated validate_all(const Scene& scene, const Document& document, const Placement& placement,

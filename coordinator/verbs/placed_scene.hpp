@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -55,6 +56,10 @@ struct Validated {
 /// Scene and bodies are read by readers of their own: what both refuse is told at once; stages that
 /// follow after it. Throws InputErrorList.
 Scene read_all_keys(const Document& document);
+
+/// Sets a scene up. Errors that it throws have the words of the scene's units, in which its numbers
+/// are: "overlap by 14 mm".
+void in_units_of(const Scene& scene, const std::function<void()>& set_up);
 
 /// All that can be said of a scene with the bodies that are there. `processes`: what they send goes
 /// in frames. Throws InputError.

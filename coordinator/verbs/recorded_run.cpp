@@ -282,9 +282,11 @@ RunPlan plan_run(Document document, const RunOptions& options, const Interrupts&
     check_programs(plan.scene, plan.document);
     check_endpoint(plan.scene, plan.document, options.insecure);
   }
-  plan.placement =
-      place(plan.scene, plan.document, options.local, interrupts.at_once, options.awaited);
-  plan.valid = validate_all(plan.scene, plan.document, plan.placement, !options.local);
+  in_units_of(plan.scene, [&] {
+    plan.placement =
+        place(plan.scene, plan.document, options.local, interrupts.at_once, options.awaited);
+    plan.valid = validate_all(plan.scene, plan.document, plan.placement, !options.local);
+  });
   return plan;
 }
 

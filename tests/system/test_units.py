@@ -130,6 +130,10 @@ class Units(SystemTest):
         told = self.abut("run", "scene.yaml", "--local", "--force", "--out", self.out)
         self.assertRegex(told.stderr, r"e-02 ms: contact 'impact' closes at 10 mm/ms;")
 
+    def test_what_is_refused_once_bodies_are_there_has_the_words_of_its_system(self):
+        self.assertIn("overlap by 0.5 mm at the start",
+                      self.refused(MILLIMETRES.replace("-250.1", "-249.5")))
+
     def test_what_is_resolved_tells_the_systems_words_and_runs_again(self):
         state = self.state(MILLIMETRES)
         text = self.resolved()
