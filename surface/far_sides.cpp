@@ -22,9 +22,10 @@ bool sees_through(const Eigen::Vector3d& place, const PosedSurface& other, const
   if (!(height < -depth)) return false;
   const std::optional<SurfacePoint> nearest = closest_point(other, tree, place);
   if (!nearest) return false;
+  const Eigen::Vector3d way = place - nearest->at.point;
+  const bool inside = way.dot(mean_normal(corners(other, nearest->facet))) <= 0.0;
   const double between = out.dot(nearest->at.point - on);
-  // Inside of the body the nearest place of its far side would be beyond.
-  return between < -depth && between > height + depth;
+  return !inside && between < -depth && between > height + depth;
 }
 
 void FarSides::leave_out(const PosedSurface& k, const PosedSurface& n, double depth,

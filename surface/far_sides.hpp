@@ -14,8 +14,8 @@ namespace abut {
 // no rows there.
 
 /// Whether a place of one body, behind a facet of `other`, sees that facet through `other`: what is
-/// nearest of `other` lies between them. `tree` holds the boxes of `other` in this pose; `depth`
-/// [m]: what is less far behind is not looked at.
+/// nearest of `other` lies between them, and the place is not in it. `tree` holds the boxes of
+/// `other` in this pose; `depth` [m]: what is less far behind is not looked at.
 [[nodiscard]] bool sees_through(const Eigen::Vector3d& place, const PosedSurface& other,
                                 const BoxTree& tree, int facet, double depth);
 

@@ -253,9 +253,8 @@ void SurfaceObstacle::leave_out_far_sides(const PosedSurface& k, std::span<const
                                           const PosedSurface& n, double way) {
   constexpr double thinnest = 1.0e-3;  // of a facet: bodies are not thinner
   const double depth = thinnest * own_.spacing;
-  const bool any = std::ranges::any_of(pairs_, [&](const FacetPair& pair) {
-    return is_behind(k, n, pair, way + depth);
-  });
+  const bool any = std::ranges::any_of(
+      pairs_, [&](const FacetPair& pair) { return is_behind(k, n, pair, way + depth); });
   if (!corners_may_meet() && any) find_pose_before();
   if (any)
     far_sides_.leave_out(posed(k, begin), posed(n, pose_before_), depth, pairs_);

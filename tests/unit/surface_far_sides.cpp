@@ -56,6 +56,18 @@ TEST(FarSides, SidesOfBodiesThatOverlapStay) {
   EXPECT_FALSE(left_out(block, Rectangle(9.9, -9.9, 10.0, 10.0)));  // by their corners alone
 }
 
+/// Of what is round a place a little inside lies far behind the planes of facets beside it.
+TEST(FarSides, SidesOfRoundBodiesThatArePressedInStay) {
+  Rectangle round(0.0, 0.0, 0.0, 0.0);  // an octagon about (0, 0), its top from -1 to 1
+  round.points = {1.0,  -2.4, 2.4,  -1.0, 2.4,  1.0,  1.0,  2.4,
+                  -1.0, 2.4,  -2.4, 1.0,  -2.4, -1.0, -1.0, -2.4};
+  round.facets = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 0};
+  round.offsets = {0, 2, 4, 6, 8, 10, 12, 14, 16};
+  for (const std::int32_t facet : {2, 3, 4})
+    for (const double x : {-3.0, -1.5, 0.0, 1.5, 3.0})
+      EXPECT_FALSE(left_out({x - 1.0, 2.3, 2.0, 2.0}, round, {bottom, facet})) << facet << " " << x;
+}
+
 TEST(FarSides, WhatIsNotBehindIsNotLookedAt) {
   EXPECT_FALSE(left_out({0.0, 1.0, 10.0, 1.0}, {0.0, 0.0, 10.0, 1.0}));
   EXPECT_FALSE(left_out({0.0, 1.0 - 0.5 * depth, 10.0, 1.0}, {0.0, 0.0, 10.0, 1.0}));
