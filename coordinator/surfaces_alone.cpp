@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "surface/closest_point.hpp"
 #include "surface/solid_angle.hpp"
 
 namespace abut {
@@ -24,8 +23,8 @@ constexpr double nothing = 1.0e-9;
 /// Points of all partners that are asked of a part, but a few of each: which side they are on does
 /// not take more, and large surfaces of large partners would take minutes.
 constexpr int points_asked = 200, least_asked = 4;
-/// Of a facet: what is nearer to it lies on it.
-constexpr double touching = 1.0e-3;
+/// Of a facet.
+constexpr double within = 0.05;
 
 /// Facets of a port by what hangs together: facets that share a node do.
 std::vector<Facets> parts_of(const PosedSurface& surface) {
@@ -60,30 +59,19 @@ struct Part {
   }
 };
 
-bool touches(const PosedSurface& part, const Eigen::Vector3d& x) {
-  for (int f = 0; f < part.facet_count(); ++f) {
-    const Corners facet = corners(part, f);
-    const double size = (facet.x[1] - facet.x[0]).norm();
-    if (closest_point(facet, x).distance <= touching * size) return true;
-  }
-  return false;
-}
-
-/// [rad], [sr] Mean of what points of a partner see of a part: of so many at most, evenly chosen.
-/// What lies on it, as a belt on its pulley, sees either side, and is asked where all does.
+/// [rad], [sr] Mean of what a partner sees of a part from a little within its facets, as what lies
+/// on a surface sees either side of it: from so many at most, evenly chosen.
 double seen_by(const PortGeometry& partner, const PosedSurface& part, int most) {
   const PosedSurface other = posed(partner);
-  const int each = 1 + (other.node_count() - 1) / most;
-  double sum = 0.0, of_touching = 0.0;
-  int apart = 0, asked = 0;
-  for (int k = 0; k < other.node_count(); k += each, ++asked) {
-    const double seen = solid_angle(part, other.point(k));
-    const bool on_it = seen != 0.0 && touches(part, other.point(k));
-    (on_it ? of_touching : sum) += seen;
-    if (!on_it) ++apart;
+  const int each = 1 + (other.facet_count() - 1) / most;
+  double sum = 0.0;
+  int asked = 0;
+  for (int f = 0; f < other.facet_count(); f += each, ++asked) {
+    const Corners facet = corners(other, f);
+    const double size = (facet.x[1] - facet.x[0]).norm();
+    sum += solid_angle(part, centre(facet) - within * size * mean_normal(facet));
   }
-  if (apart > 0) return sum / apart;
-  return asked > 0 ? of_touching / asked : 0.0;
+  return asked > 0 ? sum / asked : 0.0;
 }
 
 void turn(PortGeometry& port, const Facets& part) {

@@ -101,19 +101,20 @@ TEST(SurfaceTools, WhatHasNoSideIsRefusedWithTheFacet) {
   expect_words(refusal([&] { gmsh_mesh(file_of(3, cube, cube_sides), "part.msh"); }), {"plane"});
 }
 
-/// A block that falls on a tool, by the tool's shape, with this side of it.
-ResultPtr fall(int dim, const std::string& shape, const std::string& side = "") {
+/// A block that falls on a tool, by the tool's shape, with this side of it, from so far above [m].
+ResultPtr fall(int dim, const std::string& shape, const std::string& side = "",
+               double above = 0.01) {
   SolidText block{.name = "block",
                   .material =
                       "linear_elastic: {youngs_modulus: 1.0e6, poissons_ratio: 0.3, density: "
                       "1000.0}",
                   .integrator = "newmark: {step: 1.0e-3}",
-                  .position = {0.35, 1.01},
+                  .position = {0.35, 1.0 + above},
                   .velocity = {0.2, -1.0},
                   .side = "bottom",
                   .block = block_in(dim, {0.3, 0.3, 0.3}, {4, 4, 3})};
   if (dim == 3) {
-    block.position = {0.35, 0.3, 1.01};
+    block.position = {0.35, 0.3, 1.0 + above};
     block.velocity = {0.2, 0.1, -1.0};
     block.side = "back";
   }
@@ -144,6 +145,17 @@ TEST(SurfaceTools, ThatEndSomewhereLookToWhoMayTouchThem) {
     for (const char* told :
          {"contact.fall.impulse", "body.block.momentum.x", "energy.total.relative_drift_max"})
       EXPECT_EQ(drawn[0]->measure(told), drawn[1]->measure(told)) << side << " " << told;
+  }
+}
+
+/// Nodes that lie on a surface are on neither side of it: it looked inwards, and was overlapped.
+TEST(SurfaceTools, LookToWhatLiesOnThem) {
+  const std::string path = testing::TempDir() + "tool_below.msh";
+  std::ofstream(path) << file_of(2, square, square_sides);
+  for (const char* side : {"bottom", "boundary"}) {
+    const auto run = fall(2, "gmsh: {file: " + path + "}", side, 0.0);
+    ASSERT_TRUE(run->completed()) << run->end.reason;
+    EXPECT_GT(run->measure("body.block.momentum.y"), 0.0) << side;  // it has bounced
   }
 }
 
