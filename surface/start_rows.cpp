@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "base/index.hpp"
+#include "surface/closest_point.hpp"
 #include "surface/far_sides.hpp"
 #include "surface/meeting_corners.hpp"
 #include "surface/mortar.hpp"
@@ -18,11 +20,35 @@ namespace {
 
 /// Facet sizes that a node may lie behind a surface and still be seen.
 constexpr double reach = 2.0;
+/// Of the size of facets: what is no farther beside one lies over it.
+constexpr double beside = 0.02;
 /// Of the size of facets: bodies are not thinner.
 constexpr double thinnest = 1.0e-3;
 
 /// Half of sharp_edge: the angle between a facet and the normal of its node where two such meet.
 const double smooth = std::cos(0.5 * sharp_edge);
+
+/// [m] How near the other surface edges are that its facets see and that lie over it, no farther
+/// off than a facet; infinity: none is.
+double nearest_edge(const StartSurface& one, const StartSurface& other) {
+  double least = std::numeric_limits<double>::infinity();
+  const std::vector<std::int32_t> nodes = edge_nodes(one.surface, other.spacing);
+  if (nodes.empty()) return least;
+  BoxTree tree;
+  build(tree, other.surface, 0.0);
+  ClosestSearch search;
+  search.reach = facet_size(one, other);
+  for (const std::int32_t node : nodes) {
+    const Eigen::Vector3d x = one.surface.point(node);
+    const auto foot = closest_point(other.surface, tree, x, search);
+    if (!foot) continue;
+    const Eigen::Vector3d way = x - foot->at.point;
+    const Eigen::Vector3d normal = mean_normal(corners(other.surface, foot->facet));
+    if ((way - way.dot(normal) * normal).norm() <= beside * other.spacing)
+      least = std::min(least, foot->at.distance);
+  }
+  return least;
+}
 
 }  // namespace
 
@@ -89,8 +115,7 @@ SurfaceRows average_rows(const StartSurface& one, const StartSurface& other) {
 bool has_edges(const PosedSurface& surface) { return !sharp_nodes(surface, sharp_edge).empty(); }
 
 bool rows_of_other(const StartSurface& finder, const StartSurface& other) {
-  return !edge_nodes(other.surface, finder.spacing).empty() &&
-         edge_nodes(finder.surface, other.spacing).empty();
+  return nearest_edge(other, finder) + beside * finder.spacing < nearest_edge(finder, other);
 }
 
 }  // namespace abut

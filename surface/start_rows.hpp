@@ -37,9 +37,9 @@ SurfaceRows average_rows(const StartSurface& one, const StartSurface& other);
 /// Whether a surface has edges that are sharp to contact.
 bool has_edges(const PosedSurface& surface);
 
-/// Whether rows of a contact are of the other surface's nodes where its edges are near: it has some
-/// that the finder's facets see (edge_nodes), and the other way round none [M.93]. Averages of the
-/// finder's nodes mean nothing there.
+/// Whether rows of a contact are of the other surface's nodes: it has edges that the finder's
+/// facets see (edge_nodes) over the finder, no farther off than a facet and nearer than the
+/// finder's own are to it [M.93]. Averages of the finder's nodes mean nothing there.
 bool rows_of_other(const StartSurface& finder, const StartSurface& other);
 
 }  // namespace abut

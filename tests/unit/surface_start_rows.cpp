@@ -2,6 +2,9 @@
 // Oracles: regular polygons in closed form; circles of unlike facets that fit each other.
 
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -48,6 +51,38 @@ TEST(StartRows, NodesOfCirclesThatFitLieBehindEachOtherByNoMore) {
         for (const double gap : rows.gaps) EXPECT_GE(gap, -roundness(one, other)) << k << " " << n;
     }
   }
+}
+
+/// An outline in the plane, anticlockwise.
+struct Outline {
+  std::vector<double> points;
+  std::vector<std::int32_t> facets{}, offsets{0};
+
+  explicit Outline(std::vector<double> around) : points(std::move(around)) {
+    const auto count = static_cast<std::int32_t>(points.size() / 2);
+    for (std::int32_t a = 0; a < count; ++a) {
+      facets.insert(facets.end(), {a, (a + 1) % count});
+      offsets.push_back(2 * a + 2);
+    }
+  }
+  PosedSurface pose() const { return {2, points, facets, offsets}; }
+};
+
+TEST(StartRows, AreOfWhatIsRoundBeforeFacetsWhoseOwnEdgesAreFarAway) {
+  const Outline block({-6, -4, 6, -4, 6, 0, 2, 0, -2, 0, -6, 0});
+  const auto ball = [](double x) {
+    std::vector<double> around;
+    for (int i = 0; i < 24; ++i) {
+      const double angle = (i - 6) * pi / 12.0;
+      around.insert(around.end(), {x + 8.0 * std::cos(angle), 8.05 + 8.0 * std::sin(angle)});
+    }
+    return Outline(around);
+  };
+  const Outline over_middle = ball(0.0), over_corner = ball(6.0);
+  const StartSurface finder{block.pose(), 4.0};
+  EXPECT_TRUE(rows_of_other(finder, {over_middle.pose(), 2.1}));
+  EXPECT_FALSE(rows_of_other({over_middle.pose(), 2.1}, finder));
+  EXPECT_FALSE(rows_of_other(finder, {over_corner.pose(), 2.1}));
 }
 
 }  // namespace
