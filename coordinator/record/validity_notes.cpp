@@ -20,6 +20,9 @@ constexpr double inertia_of_what_turns = 0.9, inertia_of_all = 0.75, has_turned 
 /// Of the kinetic and stored energy: what a body stores below this is vibration of no interest.
 constexpr double worth_a_look = 1.0e-6;
 
+/// Of what a body stores: springs that have taken less bore some hundredths of the forces at most.
+constexpr double springs_may_take = 0.05;
+
 /// 0: the body does not tell it.
 double told(const Description& body, std::span<const double> values, const std::string& name) {
   const auto found = std::find(body.measures.begin(), body.measures.end(), name);
@@ -39,6 +42,23 @@ std::string stabilised_motion(const Description& body, std::span<const double> v
   }
   const bool turns = most < 0.5 * told(body, values, "stabilisation.force");
   return turns ? "turning as a whole" : words;
+}
+
+std::string stabilisation_note(const Description& body, std::span<const double> values) {
+  const double work = told(body, values, "stabilisation.work");
+  std::string note =
+      fmt::format("'{}' is held as a whole by contact alone and was stabilised: at the end that "
+                  "bears {:.2g} % "
+                  "of the forces on it, {:.2g} % at most on the way; it took {:.3g} J",
+                  body.name, 100.0 * told(body, values, "stabilisation.share"),
+                  100.0 * told(body, values, "stabilisation.share_max"), work);
+  if (work > springs_may_take * told(body, values, "energy.stored"))
+    note += fmt::format(
+        ", which is much beside what the body stores: forces before the end are too large by what "
+        "it bore then. A hundredth of bodies.{}.integrator.quasi_static.stabilisation.stiffness "
+        "(0.01 where nothing is said) bears less, and so do shorter steps",
+        body.name);
+  return note;
 }
 
 }  // namespace
@@ -105,13 +125,7 @@ std::vector<std::string> validity_notes(const Description& body, std::span<const
         "form has kept away",
         body.name));
   if (told(body, values, "stabilisation.at_most") > 0.0)
-    notes.push_back(
-        fmt::format("'{}' is held as a whole by contact alone and was stabilised: at the end that "
-                    "bears {:.2g} % "
-                    "of the forces on it, {:.2g} % at most on the way; it took {:.3g} J",
-                    body.name, 100.0 * told(body, values, "stabilisation.share"),
-                    100.0 * told(body, values, "stabilisation.share_max"),
-                    told(body, values, "stabilisation.work")));
+    notes.push_back(stabilisation_note(body, values));
   const double share = told(body, values, "energy.hourglass_share");
   const double stored = told(body, values, "energy.stored");
   const double all = stored + told(body, values, "energy.kinetic");

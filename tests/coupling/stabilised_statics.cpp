@@ -258,6 +258,14 @@ TEST(StabilisedStatics, OverlapsByRoundingsAreTouches) {
   }
 }
 
+/// Whether a run warns that forces before its end have a part that springs bore.
+bool warns_of_forces_on_the_way(const RunResult& run) {
+  return std::ranges::any_of(run.events, [](const RunEvent& event) {
+    return event.kind == RunEvent::Kind::warning &&
+           event.text.find("forces before the end are too large") != std::string::npos;
+  });
+}
+
 TEST(StabilisedStatics, WhatLeansOnSomethingSoftSettlesBeforeTheEnd) {
   // Springs of a block that is 400 times as stiff as what it leans on, s = d 0.01 400 E, keep
   // s/(s + E) of their force in a step, nine tenths: four short windows are not enough.
@@ -268,6 +276,7 @@ TEST(StabilisedStatics, WhatLeansOnSomethingSoftSettlesBeforeTheEnd) {
     ASSERT_TRUE(run->completed()) << run->end.reason;
     const double borne = run->measure("body.b1.stabilisation.share");
     EXPECT_LT(borne, run->measure("body.b1.stabilisation.at_most"));
+    EXPECT_TRUE(warns_of_forces_on_the_way(*run));
     // What springs do not bear, the block below does; the sweeps' tolerance.
     EXPECT_NEAR(reaction(*run, "y"), (1.0 - borne) * column.pressure, 2.0e-6 * column.pressure);
   }
@@ -296,6 +305,7 @@ TEST(StabilisedStatics, BodiesOfFiniteStrainSettleToo) {
   // A hundredth of what stabilises is left after every step of constant load: six.
   EXPECT_NEAR(reaction(*run, "y"), column.pressure, 1.0e-7 * column.pressure);
   EXPECT_LT(run->measure("body.b1.stabilisation.share"), 1.0e-7);  // as above
+  EXPECT_FALSE(warns_of_forces_on_the_way(*run));
 }
 
 TEST(StabilisedStatics, FrictionBearsAPush) {
