@@ -1,7 +1,9 @@
-"""A stack of four unlike bodies that statics press together, yielding and odd enough that contact
-finds no answer in some windows: these go passively."""
+"""A stack of four unlike bodies that statics press together, yielding and odd enough that sweeps
+take long in its windows. Where they may not, it goes passively."""
 
 PRESSURE, WIDTH = 1.0e5, 0.67  # [Pa] at the end of statics, on the uppermost body; [m], 1 m thick
+
+PASSIVELY = ("--set", "schwarz.max_iterations=1")  # options of a run
 
 LAWS = {
     "soft": "j2_plasticity: {youngs_modulus: 3.32e7, poissons_ratio: 0.2, density: 8000.0, "

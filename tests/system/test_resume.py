@@ -12,7 +12,7 @@ import signal
 import time
 from pathlib import Path
 
-from pressed_stack import pressed_stack
+from pressed_stack import PASSIVELY, pressed_stack
 from support import ABUT, ROOT, SystemTest, is_solver, main, marked
 
 # A scene of each kind, windows from one checkpoint to the next, and shares of its time at which it
@@ -147,10 +147,10 @@ class Kills(Resume):
 
     def test_statics_are_the_same_between_passive_steps(self):
         self.scene.write_text(pressed_stack(", interference: {over: 0}"), encoding="utf-8")
-        whole = self.run_whole(self.scene)
+        whole = self.run_whole(self.scene, *PASSIVELY)
         given_up = self.summary(whole)["accuracy"]["given_up"]
         self.assertGreater(given_up["passive_windows"], 2)
-        self.assert_same_where_killed((0.5, 0.625, 0.75), whole, self.scene)
+        self.assert_same_where_killed((0.5, 0.625, 0.75), whole, self.scene, *PASSIVELY)
 
     def test_a_killed_solver_costs_what_came_since_the_checkpoint(self):
         whole = self.run_whole(self.scene, *checkpoints(50))

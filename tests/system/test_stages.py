@@ -10,7 +10,7 @@ import itertools
 import sys
 
 sys.dont_write_bytecode = True
-from pressed_stack import MOTION, PRESSURE, WIDTH, pressed_stack  # noqa: E402
+from pressed_stack import MOTION, PASSIVELY, PRESSURE, WIDTH, pressed_stack  # noqa: E402
 from support import ROOT, SystemTest, main  # noqa: E402
 
 PRESSURE = 1.0e5  # [Pa] on 0.6 m, 1 m thick, or 0.6 m x 0.6 m; grows until statics end
@@ -144,7 +144,7 @@ class Fits(SystemTest):
         load = PRESSURE * WIDTH
         for start in (", interference: {over: 0}", ", interference: {over: 0.5}"):
             with self.subTest(start=start):
-                done, out = self.run_scene(pressed_stack(start))
+                done, out = self.run_scene(pressed_stack(start), *PASSIVELY)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 summary = self.summary(out)
                 self.assertGreater(summary["accuracy"]["given_up"]["passive_windows"], 0)
