@@ -14,7 +14,7 @@ struct ContactLaw {
   bool tied = false;  // holds in tension too, and any gap of the references counts as none
   // Of surfaces: each node of the body that finds contact for itself, instead of averages [M.95].
   bool points = false;
-  FrictionLaw friction;  // of surfaces
+  FrictionLaw friction = {};  // of surfaces
 };
 
 /// The partner's moving surface, on the partner's own points: what the body must not penetrate, or,

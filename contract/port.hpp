@@ -17,13 +17,13 @@ struct PortGeometry {
   // so many points, the last ones, are inside the body: where a body that overlaps it has its own
   // surface. Their facets are the last ones too, and look as that surface's do from the other side.
   std::int32_t embedded = 0;
-  std::vector<double> points;         // [m] (n, dim), reference configuration
-  std::vector<double> normals;        // (n, dim), unit, out of the body
-  std::vector<std::int32_t> facets;   // facet connectivity; empty in 1D
-  std::vector<std::int32_t> offsets;  // of the facets; empty in 1D
+  std::vector<double> points = {};    // [m] (n, dim), reference configuration
+  std::vector<double> normals = {};   // (n, dim), unit, out of the body
+  std::vector<std::int32_t> facets = {};   // facet connectivity; empty in 1D
+  std::vector<std::int32_t> offsets = {};  // of the facets; empty in 1D
   // So many facets, one after the other, show one facet of an element: 1, or of second order those
   // that straight_parts tells of. Empty: 1 each.
-  std::vector<std::int32_t> parts;
+  std::vector<std::int32_t> parts = {};
   // [m] typical distance of mesh nodes behind the port; 0: rigid
   double spacing = 0.0;
   // [s] time in which the fastest wave crosses `spacing`; 0: rigid or unknown

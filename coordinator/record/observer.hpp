@@ -121,22 +121,22 @@ struct GivenUp {
 
 struct RunEnd {
   std::string status;  // completed | failed | interrupted
-  std::string reason;  // why it failed, in words; else empty
+  std::string reason = {};  // why it failed, in words; else empty
   double time = 0.0;   // [s] how far the run came
   // over bodies and coordinator, equal in every placement; empty: the bodies were gone
-  std::optional<std::uint64_t> state_hash;
-  std::vector<std::uint64_t> body_hashes;  // by body: those of the bodies alone
+  std::optional<std::uint64_t> state_hash = {};
+  std::vector<std::uint64_t> body_hashes = {};  // by body: those of the bodies alone
   std::int64_t windows = 0;                // accepted
   std::int64_t contact_windows = 0;        // accepted with a closed interface
   std::int64_t exchanges = 0;              // requests answered by bodies, kernels included
   double wall_seconds = 0.0;               // first window to last
-  std::vector<double> compute_seconds;     // by body
+  std::vector<double> compute_seconds = {};  // by body
   // by body, in the order of its Description::measures; empty where the run did not come to its end
-  std::vector<std::vector<double>> body_measures;
+  std::vector<std::vector<double>> body_measures = {};
   double overhead_median_seconds = 0.0;  // per exchange: wall minus compute
-  std::vector<Overlap> overlaps;         // that were found, each pair once
-  std::vector<std::string> never_met;    // interfaces that never closed where they should have
-  GivenUp given_up;
+  std::vector<Overlap> overlaps = {};    // that were found, each pair once
+  std::vector<std::string> never_met = {};  // interfaces that never closed where they should have
+  GivenUp given_up = {};
 };
 
 /// A customer of a run: log, table, summary, monitor. Never changes what the run computes.

@@ -25,7 +25,7 @@ struct Part {
   std::string element = "quad4", plane;
   std::string law = "linear_elastic: {youngs_modulus: 1.0, poissons_ratio: 0.3, density: 1.0}";
   std::string integrator = "quasi_static: {step: 1.0}";
-  std::string constraints, loads;
+  std::string constraints = {}, loads = {};
   std::string model = "fe", options;  // options of the model, each followed by a comma
   std::string more;                   // keys of the body
 

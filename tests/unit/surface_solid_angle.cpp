@@ -22,7 +22,7 @@ constexpr double rounding = 1.0e-14;  // of atan2 and a dozen sums of numbers of
 struct Surface {
   int dim = 3;
   std::vector<double> points;
-  std::vector<std::int32_t> facets, offsets{0};
+  std::vector<std::int32_t> facets = {}, offsets{0};
   bool round = false;
 
   void add(std::initializer_list<std::int32_t> facet) {
