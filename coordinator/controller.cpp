@@ -189,7 +189,9 @@ void Controller::unite_start() {
 /// Pairs that may meet within the next windows are watched one by one from now on.
 void Controller::join_near() {
   if (broad_phase_.empty()) return;
+  const std::size_t known = joints_.size();
   join(broad_phase_.near(bodies_, watched_windows * scene_.time.window));
+  for (auto& pair : std::span(joints_).subspan(known)) narrator_.pressed_in(pair, clock_.time());
 }
 
 void Controller::join(std::span<const PortPair> pairs) {

@@ -72,7 +72,7 @@ class Controller {
   /// Who is told what the run's time goes into: "window", "flight", "island" and so on.
   void tell_spans(SpanSink sink) { bodies_.tell_spans(std::move(sink)); }
   const SpanSink& spans() const { return bodies_.spans(); }
-  /// Whether bodies stay in their passive forms where the stage ends: those of statics leave them.
+  /// Whether bodies stay in their passive forms where the stage ends; they leave them if they can.
   bool stays_passive();
   /// Called by `run` before every window or flight, and after the last one of a run that has not
   /// failed; may call `save`.

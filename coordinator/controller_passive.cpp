@@ -270,10 +270,12 @@ void Controller::go_accurately() {
     if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
 }
 
-/// Forces of contact are found anew by what follows.
+/// Forces of contact are found anew by what follows. Whatever the return costs in the midst of
+/// contact: the stage ends here.
 bool Controller::stays_passive() {
   if (!passive_.active()) return false;
-  if (!passive_.statics() || !passive_.leave(clock_.time(), anything)) return true;
+  if (!passive_.leave(clock_.time(), anything)) return true;
+  if (!passive_.statics() && (!leave_apart() || !rejoin())) return true;
   for (Joint& joint : joints_)
     if (!joint.tied() && joint.exchange != nullptr) joint.disengage();
   return false;

@@ -19,6 +19,9 @@ namespace abut {
 void SolidInterior::take_over(Archive& archive, Before by) {
   const bool statics = by == Before::statics;
   const std::string of = fmt::format("body '{}'", description_.name);
+  if (by == Before::motion && description_.quasi_static)
+    throw RunError("moves, and a stage without inertia cannot go on from there", of,
+                   "Give statics before motion, or an implicit integrator");
   const std::vector<double> start = state_.motion.v;
   // Contact in passive form finds its forces anew, and has no place for those of before.
   const bool anew = by != Before::own && parts_.massive_surface;
@@ -29,9 +32,6 @@ void SolidInterior::take_over(Archive& archive, Before by) {
   }
   if (surfaces_ == nullptr) archive.leave_rest();
   Motion& motion = state_.motion;
-  if (description_.quasi_static && !statics)
-    throw RunError("moves, and a stage without inertia cannot go on from there", of,
-                   "Give statics before motion, or an implicit integrator");
   if (is_passive())
     throw RunError("is in its passive form where the stage before ends", of,
                    "Let that stage end at another time");

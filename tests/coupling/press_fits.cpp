@@ -82,6 +82,31 @@ bool told(const RunResult& run, const std::string& words) {
   });
 }
 
+/// A block drawn half a millimetre into the ground: no key wants that, and no interface names it.
+TEST(PressFits, StaticsOfEverythingTellWhatTheyPressIn) {
+  const std::string law = "linear_elastic: {youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: "
+                          "1000.0}";
+  const SolidText ground{.name = "ground",
+                         .material = law,
+                         .integrator = "quasi_static: {step: 0.5}",
+                         .port = "skin",
+                         .side = "boundary",
+                         .more = "    constraints: {base: {on: bottom, fixed: true}}\n",
+                         .block = {{1.0, 0.3}, {5, 3}, "quad4"}};
+  const SolidText block{.name = "block",
+                        .material = law,
+                        .integrator = "quasi_static: {step: 0.5}",
+                        .position = {0.2, 0.2995},
+                        .port = "skin",
+                        .side = "boundary",
+                        .more = "    body_force: [0.0, -9.81]\n",
+                        .block = {{0.5, 0.2}, {4, 2}, "quad4"}};
+  const auto run =
+      run_solids(1.0, 0.5, {ground, block}, "", "contact: {everything: {friction: 0.3}}\n");
+  ASSERT_TRUE(run->completed()) << run->end.reason;
+  EXPECT_TRUE(told(*run, "interference of 0.0005 m is pressed in"));
+}
+
 TEST(PressFits, StaticsHoldBarsInEquilibrium) {
   for (const int dim : {2, 3}) {
     for (const bool above : {false, true}) {
