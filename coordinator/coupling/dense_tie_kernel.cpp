@@ -131,6 +131,7 @@ Responses turned(const TieLayout& layout, const TieLayout::Part& part, Responses
   return responses;
 }
 
+/// Whether no force bends what hangs on its ends, or none moves it.
 bool is_rigid(const TieLayout& layout, const TieLayout::Part& part, const Bodies& bodies) {
   return part.stands || std::ranges::all_of(part.ends, [&](const TieLayout::End& end) {
            return bodies.port(layout.side(end)).geometry.transit == 0.0;

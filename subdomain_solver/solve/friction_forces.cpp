@@ -17,15 +17,15 @@ constexpr int most_newton = 30, first_newton = 10;
 constexpr double friction_settled = 1.0e-14, accurate = 1.0e-11;
 /// The same of rows that say the same: gaps are differences of places, and differ by rounding.
 constexpr double rounded_gaps = 1.0e-8;
-/// Cubes of unknowns that a call factors: some seconds. What takes more is hardly ever found, and
-/// whoever asks has other ways.
-constexpr double most_factored = 2.0e10;
 /// The same: steps of Newton's method after which the next would be rounding.
 constexpr double friction_converged = 1.0e-9;
 /// Of the largest compliance: what rows that say the same give way by, each for itself.
 constexpr double friction_softness = 1.0e-11;
 /// Of the cone's radius: forces nearer to it than this are on it.
 constexpr double on_cone = 1.0e-9;
+/// Cubes of unknowns that a call factors: some seconds. What takes more is hardly ever found, and
+/// whoever asks has other ways.
+constexpr double most_factored = 2.0e10;
 
 using Tangent = OneRow<>::Tangent;
 using PlaneSquare = OneRow<>::PlaneSquare;
