@@ -20,6 +20,7 @@ Kind kind_of(const std::int64_t*) { return Kind::whole; }
 Kind kind_of(const bool*) { return Kind::flag; }
 Kind kind_of(const std::string*) { return Kind::text; }
 Kind kind_of(const std::optional<double>*) { return Kind::number; }
+Kind kind_of(const std::optional<int>*) { return Kind::whole; }
 Kind kind_of(const std::vector<double>*) { return Kind::numbers; }
 Kind kind_of(const std::vector<std::string>*) { return Kind::words; }
 Kind kind_of(const std::array<std::string, 2>*) { return Kind::two_words; }
@@ -59,7 +60,10 @@ std::string shown(int value) { return fmt::format("{}", value); }
 std::string shown(std::int64_t value) { return fmt::format("{}", value); }
 std::string shown(bool value) { return value ? "true" : "false"; }
 std::string shown(const std::string& value) { return value.empty() ? "\"\"" : value; }
-std::string shown(const std::optional<double>& value) { return value ? shown(*value) : "absent"; }
+template <class T>
+std::string shown(const std::optional<T>& value) {
+  return value ? shown(*value) : "absent";
+}
 template <class Values>
 std::string shown(const Values& values) {
   std::vector<std::string> items;

@@ -54,9 +54,9 @@ struct Preset {
 };
 
 /// Where one value lives.
-using Slot =
-    std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
-                 std::vector<double>*, std::vector<std::string>*, std::array<std::string, 2>*>;
+using Slot = std::variant<double*, int*, std::int64_t*, bool*, std::string*, std::optional<double>*,
+                          std::optional<int>*, std::vector<double>*, std::vector<std::string>*,
+                          std::array<std::string, 2>*>;
 
 class Fields;
 

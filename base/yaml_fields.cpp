@@ -92,8 +92,11 @@ class Reader final : public Fields {
   void fill(bool& value, const Key&, const std::string& path, const YAML::Node&, const Rule&);
   void fill(std::string& value, const Key&, const std::string& path, const YAML::Node&,
             const Rule&);
-  void fill(std::optional<double>& value, const Key&, const std::string& path, const YAML::Node&,
-            const Rule&);
+  template <class T>
+  void fill(std::optional<T>& value, const Key& key, const std::string& path,
+            const YAML::Node& node, const Rule& rule) {
+    fill(value.emplace(), key, path, node, rule);
+  }
   void fill(std::vector<double>& value, const Key&, const std::string& path, const YAML::Node&,
             const Rule&);
   void fill(std::vector<std::string>& value, const Key&, const std::string& path, const YAML::Node&,
@@ -112,6 +115,7 @@ const char* form_of(const std::int64_t*) { return "a whole number"; }
 const char* form_of(const bool*) { return "true or false"; }
 const char* form_of(const std::string*) { return "text"; }
 const char* form_of(const std::optional<double>*) { return ""; }
+const char* form_of(const std::optional<int>*) { return "a whole number"; }
 const char* form_of(const std::vector<double>*) { return "a list of numbers"; }
 const char* form_of(const std::vector<std::string>*) { return "a list of words"; }
 const char* form_of(const std::array<std::string, 2>*) { return "a list of two words"; }
@@ -410,11 +414,6 @@ void Reader::fill(bool& value, const Key& key, const std::string& path, const YA
 void Reader::fill(std::string& value, const Key& key, const std::string& path,
                   const YAML::Node& node, const Rule&) {
   value = text(key, path, node);
-}
-
-void Reader::fill(std::optional<double>& value, const Key& key, const std::string& path,
-                  const YAML::Node& node, const Rule& rule) {
-  value = number(key, path, node, rule);
 }
 
 void Reader::fill(std::vector<double>& value, const Key& key, const std::string& path,

@@ -170,7 +170,8 @@ class Writer final : public Fields {
     node.text = written(value);
     node.unit = units_.word(key.unit);
   }
-  void put(const Key& key, const std::optional<double>& value) {
+  template <class T>
+  void put(const Key& key, const std::optional<T>& value) {
     if (value) put(key, *value);
   }
 

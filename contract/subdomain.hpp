@@ -57,6 +57,7 @@ struct Description {
   // ones, translation [m] and rotation [rad] about the origin (one number in 2D, three in 3D) per
   // unit of each. Empty: it is held, or has inertia.
   std::vector<double> loose;
+  bool stabilised = false;  // springs hold it where only contact would hold a body without inertia
   std::vector<Port> ports;
   Capabilities can;
   std::vector<Member> members;        // empty: the body is one solid

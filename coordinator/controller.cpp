@@ -27,10 +27,6 @@ namespace abut {
 
 namespace {
 
-/// Pairs of a scene where everything may touch everything are joined when they may meet within so
-/// many: contact begins to look at its joints within the next one or two.
-constexpr double watched_windows = 4.0;
-
 std::vector<const Description*> descriptions_of(const Bodies& bodies) {
   std::vector<const Description*> descriptions;
   for (int b = 0; b < bodies.count(); ++b) descriptions.push_back(&bodies.describe(b));
@@ -60,7 +56,7 @@ Controller::Controller(const Scene& scene, std::vector<Subdomain*> bodies,
       reports_(joints_.size() + (broad_phase_.empty() ? 0 : 1)) {
   end_.status = "completed";
   settles_ = std::ranges::any_of(descriptions_of(bodies_),
-                                 [](const Description* body) { return is_stabilised(*body); });
+                                 [](const Description* body) { return body->stabilised; });
   if (scene.time.until) event_.emplace(scene);
   flight_.longest = flight_.limit =
       windows_at_once(scene.time.window, scene.output.records_per_window, descriptions_of(bodies_));
@@ -184,21 +180,6 @@ void Controller::unite_start() {
                                   "body '{}' takes no impulses that would make them one: the sides "
                                   "go on swinging against each other; give both the same",
                                   start.speed, start.body));
-}
-
-/// Pairs that may meet within the next windows are watched one by one from now on.
-void Controller::join_near() {
-  if (broad_phase_.empty()) return;
-  const std::size_t known = joints_.size();
-  join(broad_phase_.near(bodies_, watched_windows * scene_.time.window));
-  for (auto& pair : std::span(joints_).subspan(known)) narrator_.pressed_in(pair, clock_.time());
-}
-
-void Controller::join(std::span<const PortPair> pairs) {
-  for (const PortPair& pair : pairs) {
-    roles_.join(joints_.emplace_back(make_pair(scene_, pair, bodies_)));
-    broad_phase_.join(pair);
-  }
 }
 
 bool Controller::fly_free() {

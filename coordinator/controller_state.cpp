@@ -109,26 +109,4 @@ void Controller::counts(Archive& archive) {
   narrator_.state(archive);
 }
 
-/// Joints of pairs that came near during the run, and in which order the bodies met.
-void Controller::state_of_pairs(Archive& archive) {
-  const std::size_t written = scene_.interfaces.size();
-  std::vector<PortPair> pairs;
-  for (std::size_t j = written; j < joints_.size(); ++j) pairs.push_back(joints_[j].sides);
-  list(archive, "pairs", pairs, [](Archive& a, PortPair& pair) {
-    for (Side& side : pair) {
-      whole(a, "body", side.body);
-      whole(a, "port", side.port);
-    }
-  });
-  if (!archive.writing()) join(pairs);
-  std::vector<std::int32_t> met;
-  if (archive.writing()) {
-    for (std::size_t j = written; j < joints_.size(); ++j)
-      if (joints_[j].exchange->met()) met.push_back(static_cast<std::int32_t>(j));
-    std::ranges::sort(met, {}, [this](int j) { return *joints_[j].exchange->met(); });
-  }
-  field(archive, "met", met);
-  for (const int j : met) joints_[j].exchange->introduce(joints_[j], bodies_);
-}
-
 }  // namespace abut

@@ -21,6 +21,7 @@
 #include "coordinator/coupling/loose_motions.hpp"
 #include "coordinator/coupling/roles.hpp"
 #include "coordinator/coupling/row_margin.hpp"
+#include "coordinator/coupling/support_distance.hpp"
 #include "coordinator/coupling/surface_watch.hpp"
 #include "coordinator/coupling/unilateral.hpp"
 #include "coordinator/surface_start.hpp"
@@ -345,14 +346,18 @@ bool step_apart(const Scene& scene, const std::array<Side, 2>& sides, const Bodi
 std::vector<Joint> make_joints(const Scene& scene, Bodies& bodies) {
   turn_surfaces_alone(scene, bodies);
   std::vector<Joint> joints;
-  std::vector<std::array<Side, 2>> pairs;
+  std::vector<Neighbours> pairs;
   for (const auto& [name, spec] : scene.interfaces) {
     const std::string where = "interfaces." + name + ".sides";
     pairs.push_back(
-        {find_side(spec.sides[0], bodies, where), find_side(spec.sides[1], bodies, where)});
+        {{find_side(spec.sides[0], bodies, where), find_side(spec.sides[1], bodies, where)},
+         spec.tied.has_value()});
   }
+  // What presses when a stage of motion begins goes on with the side that found it, which must be
+  // able to in that stage as well.
+  if (scene.stages.empty()) bodies.tell_supports(support_distances(pairs, bodies));
   for (const auto& [name, spec] : scene.interfaces) {
-    const std::array<Side, 2>& sides = pairs[joints.size()];
+    const std::array<Side, 2>& sides = pairs[joints.size()].sides;
     const bool surfaces = bodies.port(sides[0]).geometry.dim > 1 && spec.contact;
     const int number = static_cast<int>(joints.size());
     if (spec.tied && (bodies.port(sides[0]).geometry.dim > 1 || step_apart(scene, sides, bodies))) {
@@ -489,7 +494,7 @@ Schwarz make_schwarz(const SchwarzSpec& spec, std::vector<int> alternating) {
       net = std::make_unique<AlternatingNet>(ties);
     return Schwarz::Memory{std::visit(Maker{}, accelerator), std::move(net)};
   };
-  return Schwarz({spec.max_iterations, spec.tolerance}, make);
+  return Schwarz(spec.max_iterations, spec.tolerance, make);
 }
 
 }  // namespace abut

@@ -9,6 +9,7 @@
 
 #include "base/count.hpp"
 #include "coordinator/coupling/kernel_bytes.hpp"
+#include "coordinator/coupling/steps.hpp"
 #include "coordinator/flight_work.hpp"
 #include "coordinator/solver_processes.hpp"
 
@@ -146,7 +147,7 @@ std::int64_t most_sweeps(const Scene& scene, std::span<const Description* const>
   const std::int64_t sweeps = published           ? sweeps_published
                               : linear && kernels ? sweeps_linear
                                                   : sweeps_nonlinear;
-  return std::min<std::int64_t>(sweeps, scene.schwarz.max_iterations);
+  return std::min<std::int64_t>(sweeps, scene.schwarz.max_iterations.value_or(Steps::usual_most));
 }
 
 /// Whether windows are cut where ends of bars meet and part.

@@ -139,7 +139,9 @@ void SchwarzSpec::fields(Fields& f) {
       "also to the deformation by what presses",
       positive);
   f.optional("max_iterations", max_iterations, "",
-             "number of iterations after which a window fails", between(1, 10000));
+             "number of iterations after which a window fails; absent: 20, 50 of bodies without "
+             "inertia alone",
+             between(1, 10000));
   f.choice("accelerator", accelerator, "choice of the next iterate", Presence::optional);
   f.optional_section("ties", ties, "kernels of tied surfaces, in two and three dimensions");
   f.idle(!std::holds_alternative<KernelAcceleration>(accelerator), "ties",

@@ -94,9 +94,9 @@ struct KernelAcceleration {  // port kernels as interface Jacobian, plus secants
 enum class OnNonconvergence { passive, stop, halve, accept };
 
 struct SchwarzSpec {
-  bool parallel = false;      // "form: alternating | parallel"
-  double tolerance = 1.0e-6;  // scaled by reference velocity x step
-  int max_iterations = 20;
+  bool parallel = false;              // "form: alternating | parallel"
+  double tolerance = 1.0e-6;          // scaled by reference velocity x step
+  std::optional<int> max_iterations;  // absent: as Steps has it
   std::variant<KernelAcceleration, NoAcceleration, FixedRelaxation, AitkenAcceleration,
                AndersonAcceleration>
       accelerator;

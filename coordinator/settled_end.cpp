@@ -48,7 +48,7 @@ std::optional<double> settled_further(const TimeWindow& window, double end) {
 double borne_of_allowed(Bodies& bodies) {
   double most = 0.0;
   for (int b = 0; b < bodies.count(); ++b)
-    if (is_stabilised(bodies.describe(b)))
+    if (bodies.describe(b).stabilised)
       most = std::max(most, borne_over_allowed(bodies.describe(b), bodies[b].measure()));
   return most;
 }

@@ -144,7 +144,7 @@ void SolidInterior::find_surfaces() {
     if (geometry.facets.empty() || !may_touch_[p] || reduced || parts_.massive_surface) continue;
     const PortSurface port{p, port_map_->first(p), &geometry, nodes};
     touched_.push_back({port, ports_[p].name, model.options().thickness});
-    surfaces.push_back({port, {}});
+    surfaces.push_back({port, {}, description_.stabilised});
     SurfaceContact::Surface& surface = surfaces.back();
     for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
   }
@@ -192,6 +192,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   const Integrator::Abilities& scheme = parts_.scheme.integrator->able();
   description_.quasi_static = scheme.statics != nullptr;
   description_.loose = parts_.loose;
+  description_.stabilised = scheme.statics != nullptr && scheme.statics->stabilised();
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;

@@ -41,6 +41,11 @@ class Bodies {
   }
   /// From now on describe() tells this of a body: its facets look to the other side.
   void tell_of(int body, Description told) { told_.insert_or_assign(body, std::move(told)); }
+  /// By body, its distance to what supports hold (see support_distances).
+  void tell_supports(std::vector<std::optional<int>> of) { supports_ = std::move(of); }
+  std::optional<int> support_distance(int body) const {
+    return supports_.empty() ? std::nullopt : supports_[index(body)];
+  }
   /// The passive form of a body that is about to get one request of it, which counts.
   PassiveForm& ask_passively(int body) {
     ++exchanges_;
@@ -149,6 +154,7 @@ class Bodies {
 
   std::vector<Subdomain*> subdomains_;
   std::map<int, Description> told_;  // of what describes itself otherwise
+  std::vector<std::optional<int>> supports_;
   double window_;  // [s]
   std::vector<Advance> requests_;
   std::vector<Response> responses_;

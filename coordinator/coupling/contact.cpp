@@ -135,7 +135,7 @@ double resultant(const Waveform& force, std::size_t i, int dim) {
 
 double push_of_all(int body, const Bodies& bodies, double length) {
   const Description& about = bodies.describe(body);
-  if (std::isinf(about.mass)) return 0.0;
+  if (std::isinf(about.mass) || about.quasi_static) return 0.0;
   std::array<double, 3> sum{};
   const auto add = [&sum](const Waveform& force, double sign, std::size_t dim) {
     if (force.empty()) return;

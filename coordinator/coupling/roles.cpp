@@ -1,6 +1,7 @@
 #include "coordinator/coupling/roles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -75,11 +76,27 @@ std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies) {
   return a.step < b.step ? 0 : 1;
 }
 
+/// Of two bodies without inertia, of which one at least is loose.
+std::optional<int> nearer_to_support(const Joint& joint, const Bodies& bodies) {
+  std::array<std::optional<int>, 2> distance;
+  std::array<bool, 2> loose;
+  for (const std::size_t s : {0u, 1u}) {
+    const Description& body = bodies.describe(joint.sides[s].body);
+    if (!body.quasi_static && std::isfinite(body.mass)) return std::nullopt;
+    distance[s] = bodies.support_distance(joint.sides[s].body);
+    loose[s] = distance[s] != 0;
+  }
+  if (loose[0] != loose[1]) return loose[0] ? 0 : 1;
+  if (!loose[0] || distance[0] == distance[1] || !distance[0] || !distance[1]) return std::nullopt;
+  return *distance[0] < *distance[1] ? 0 : 1;
+}
+
 int contact_finder(const Joint& joint, const Bodies& bodies) {
   if (joint.role.fixed) return joint.role.kinematic;
   if (const std::optional<int> only = only_side(joint, bodies)) return *only;
   if (joint.role.fitted >= 0) return joint.role.fitted;
   if (joint.role.adjusted >= 0) return joint.role.adjusted;
+  if (const std::optional<int> nearer = nearer_to_support(joint, bodies)) return *nearer;
   bool yields[2];
   double spacing[2];
   for (std::size_t s : {0u, 1u}) {

@@ -64,7 +64,9 @@ class Roles {
 std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies);
 
 /// Of two surfaces, the side that finds their contact: the scene's, or the only one that can, or
-/// the one that was adjusted, since its rows touch then. That of shorter steps does, for where
+/// the one that was adjusted, since its rows touch then. Of bodies without inertia that contact
+/// holds the one nearest to what supports hold finds all its contacts, for one problem of all its
+/// rows knows how it moves as a whole. That of shorter steps does, for where
 /// contact begins and ends is known to the steps of the finder. Of equal ones a body whose port
 /// kernel is exact is pressed, the other finds; of two such that of the finer mesh does. Circles of
 /// bodies may turn it.

@@ -1,5 +1,7 @@
 #include "coordinator/coupling/schwarz.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -29,6 +31,16 @@ std::string names_of(const Island& island, const Bodies& bodies) {
   return names;
 }
 
+/// No body of it has inertia.
+bool has_no_inertia(const Island& island, const Bodies& bodies) {
+  return std::ranges::all_of(island.levels, [&bodies](const std::vector<int>& level) {
+    return std::ranges::all_of(level, [&bodies](int body) {
+      const Description& of = bodies.describe(body);
+      return of.quasi_static || std::isinf(of.mass);
+    });
+  });
+}
+
 }  // namespace
 
 std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, const Island& island,
@@ -38,7 +50,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   const auto& [accelerator, net] = memory_of(island.joints);
   net->begin(window, island, joints, bodies);
   for (Eigen::VectorXd* v : {&it_.x, &it_.g, &it_.s}) v->resize(net->size());
-  Steps steps(*net, *accelerator, steps_, bodies);
+  const int usual =
+      has_no_inertia(island, bodies) ? Steps::usual_most_of_statics : Steps::usual_most;
+  Steps steps(*net, *accelerator, {most_.value_or(usual), tolerance_}, bodies);
   if (std::optional<Failed> failed = net->predict(it_.x, bodies)) return *failed;
   for (it_.sweep = 1;; ++it_.sweep) {
     SpanScope iteration(bodies.spans(), "iteration", it_.sweep);
@@ -67,9 +81,9 @@ void Schwarz::see(Net& net, const Bodies& bodies) {
   net.image(it_.x, bodies, it_.g, it_.s);
   it_.mismatch = net.distance(it_.x, it_.g);
   bool stays_open = false;
-  it_.contradiction = net.contradiction(it_.g - it_.x, steps_.tolerance, bodies, stays_open);
+  it_.contradiction = net.contradiction(it_.g - it_.x, tolerance_, bodies, stays_open);
   it_.residual = net.residual(it_.x, it_.g);
-  it_.converged = it_.contradiction.empty() && it_.residual.largest() <= steps_.tolerance;
+  it_.converged = it_.contradiction.empty() && it_.residual.largest() <= tolerance_;
 }
 
 Schwarz::Memory& Schwarz::memory_of(const std::vector<int>& joints) {

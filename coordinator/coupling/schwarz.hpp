@@ -35,7 +35,9 @@ class Schwarz {
   /// For the joints of an island, by their numbers in the run.
   using Make = std::function<Memory(std::span<const int> joints)>;
 
-  Schwarz(const Steps::Options& steps, Make make) : steps_(steps), make_(std::move(make)) {}
+  /// `most` iterations of a window; absent: the usual ones (Steps).
+  Schwarz(std::optional<int> most, double tolerance, Make make)
+      : most_(most), tolerance_(tolerance), make_(std::move(make)) {}
 
   /// Iterates an island over a window until its sides agree. Before, its bodies are saved at the
   /// window's begin and the requests are prepared; afterwards they stand at its end, all of the
@@ -58,7 +60,8 @@ class Schwarz {
   /// What the sweep made of the iterate.
   void see(Net& net, const Bodies& bodies);
 
-  Steps::Options steps_;
+  std::optional<int> most_;
+  double tolerance_;
   Make make_;
   Iterate it_;  // kept, so that windows allocate nothing
   std::map<std::vector<int>, Memory> memories_;

@@ -27,8 +27,13 @@ struct Iterate {
 /// to the best iterate where contact makes its secants lead astray.
 class Steps {
  public:
+  static constexpr int usual_most = 20;
+  /// Of bodies without inertia alone: what moves one as a whole comes from body to body, and
+  /// shorter windows change nothing about it.
+  static constexpr int usual_most_of_statics = 50;
+
   struct Options {
-    int max_iterations = 20;
+    int max_iterations = usual_most;
     double tolerance = 1.0e-6;
   };
   /// For one window, which the net has begun.
@@ -54,7 +59,7 @@ class Steps {
 
   Net& net_;
   Accelerator& accelerator_;
-  const Options& options_;
+  const Options options_;
   Inverses inverses_;
   const bool contracts_, beside_ties_, shared_;
   bool eased_ = false;     // contact knows what ties answer

@@ -8,9 +8,6 @@
 
 namespace abut {
 
-/// Statics that contact alone holds, and springs of its own meanwhile.
-bool is_stabilised(const Description& body);
-
 /// What a body's own measures at the end of a run say against its model, one sentence each: a law
 /// of small rotations that has turned far enough to lengthen the body by 1 % (rotation.max), a
 /// tenth of the stored energy in hourglasses (energy.hourglass_share); and how much a body that

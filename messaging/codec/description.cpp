@@ -95,6 +95,7 @@ void encode(const Description& from, v1::Description& to) {
   to.set_linear(from.linear);
   to.set_quasi_static(from.quasi_static);
   copy(from.loose, *to.mutable_loose());
+  to.set_stabilised(from.stabilised);
   for (const Port& port : from.ports) {
     v1::Port& wire = *to.add_ports();
     wire.set_name(port.name);
@@ -130,6 +131,7 @@ void decode(const v1::Description& from, Description& to) {
   take(from.loose(), FieldPath{&path, "loose"}, to.loose);
   if (to.loose.size() % index(to.dim == 2 ? 3 : 6) != 0)
     FieldPath{&path, "loose"}.fail(fmt::format("has {} values", to.loose.size()));
+  to.stabilised = from.stabilised();
   if (from.ports_size() > most_ports) FieldPath{&path, "ports"}.fail("has too many entries");
   to.ports.resize(index(from.ports_size()));
   for (int i = 0; i < from.ports_size(); ++i) {

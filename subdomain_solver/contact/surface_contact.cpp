@@ -15,12 +15,6 @@ namespace abut {
 
 namespace {
 
-/// Looks at the geometry of the end of a substep: in a call, where the body is linear and there is
-/// one, and in all. Rows that went on changing would keep the body from its balance.
-constexpr int looks_of_a_call = 3, most_looks = 6;
-
-/// Of the largest force: rows that change forces by less are settled.
-constexpr double settled = 1.0e-12;
 /// Of a facet: surfaces that overlap by less are drawn as touching.
 constexpr double drawn_together = 1.0e-6;
 
@@ -425,60 +419,6 @@ void SurfaceContact::spread() {
           [&](std::int32_t point) { return &on_partner[index(near.in_whole(point)) * dim]; });
     }
   }
-}
-
-/// The surfaces to where the forces lead them from their free places.
-bool SurfaceContact::move(const Vector& free, Compliance& give) {
-  moved_ = free;
-  if (!add_given_way(give, 1.0, force_, moved_by_, moved_)) return false;
-  pose(moved_);
-  return true;
-}
-
-const Vector* SurfaceContact::solve_rows(double time, const Vector& free, Compliance& give) {
-  missing_.clear();
-  if (looks_ == 0 || time != time_) {
-    time_ = time;
-    looks_ = 0;
-    row_force_.resize(0);  // guesses are of the state and of nothing before
-    rows_of_near_.clear();
-    for (Meeting& m : meetings_)
-      if (m.obstacle->acts()) m.obstacle->place(time);
-    pose(free);
-    for (Own& own : surfaces_) {
-      own.travel = 0.0;
-      for (std::size_t v = 0; v < own.pose.size(); ++v)
-        own.travel = std::max(own.travel, std::abs(own.pose[v] - own.begin[v]));
-    }
-    force_.setZero(free.size());  // those of the substep before are the first guess
-    for (const Meeting& m : meetings_) {
-      const Own& own = surfaces_[m.own];
-      for (std::size_t v = 0; v < own.at.size(); ++v) force_(own.at[v]) += pressed_[m.pressed + v];
-    }
-  }
-  for (int look = 0; look < looks_of_a_call; ++look) {
-    if (looks_ < most_looks) {
-      if (!move(free, give)) return nullptr;
-      make_rows();
-      ++looks_;
-    }
-    const bool again = look + 1 < looks_of_a_call && looks_ < most_looks;
-    last_ = force_;
-    many_ = false;
-    if (!find_gaps(free)) {
-      row_force_.setZero(gaps_.size());
-    } else if (many(give) && find_many(give, again)) {
-      many_ = true;
-    } else if (!find_in_one_matrix(give)) {
-      return nullptr;
-    }
-    spread();
-    const double change = (force_ - last_).lpNorm<Eigen::Infinity>();
-    if (change <= settled * force_.lpNorm<Eigen::Infinity>() || looks_ >= most_looks) break;
-  }
-  for (std::size_t k = 0; k < meetings_.size(); ++k)
-    turned_[k] = meetings_[k].obstacle->turned() ? 1.0 : 0.0;
-  return &force_;
 }
 
 }  // namespace abut

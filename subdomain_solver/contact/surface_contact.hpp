@@ -28,6 +28,7 @@ class SurfaceContact final : public PortContact {
  public:
   struct Surface : PortSurface {
     std::vector<const Matrix3*> frames;  // by point; null: the axes of space
+    bool loose = false;                  // contact alone holds its body (Description::stabilised)
   };
   /// `body`: its name, for people. Frames must outlive it. `interference`: absent, there is none
   /// that is wanted.
@@ -70,11 +71,11 @@ class SurfaceContact final : public PortContact {
  private:
   struct Own {  // a surface in its pose
     Surface surface;
-    std::vector<int> at;        // (values) its coordinates among those of contact
-    std::vector<double> pose;   // [m] (points, dim)
-    std::vector<double> begin;  // [m] (points, dim) where the substep began
-    double travel = 0.0;        // [m] from there to the free pose, at most
-    std::size_t met = 0;        // partners that have meetings
+    std::vector<int> at;              // (values) its coordinates among those of contact
+    std::vector<double> pose, begin;  // [m] (points, dim), and where the substep began
+    double travel = 0.0;              // [m] from there that rows are looked for, at most
+    double farthest = 0.0;            // [m] the same, to the free pose
+    std::size_t met = 0;              // partners that have meetings
     TiedNeighbours neighbours;
   };
   struct Meeting {
@@ -112,6 +113,7 @@ class SurfaceContact final : public PortContact {
   [[nodiscard]] bool find_compliance(Compliance& give);
   void add_components(Meeting& m);
   void find_terms(const Own& own, const SurfaceRows& rows, int row, const double* direction);
+  static double travelled(const Own& own);
   void find_slips(const Meeting& m);
   [[nodiscard]] bool find_forces();
   void number_points();
@@ -134,6 +136,9 @@ class SurfaceContact final : public PortContact {
   }
   void forget_shears(const Meeting& m);
   void spread();
+  void begin_looks(double time, const Vector& free);
+  void look_from_begin(const Vector& free);
+  [[nodiscard]] bool look(const Vector& free, Compliance& give);
   [[nodiscard]] bool move(const Vector& free, Compliance& give);
   std::span<double> pressed(const Meeting& m);
   std::span<double> reacted(const Meeting& m);
@@ -146,8 +151,7 @@ class SurfaceContact final : public PortContact {
   std::vector<int> dofs_;
   struct Sizes {  // of what all meetings so far have in the state
     std::size_t pressed = 0, reacted = 0, slid = 0, shears = 0, anchor = 0;
-  };
-  Sizes sizes_;
+  } sizes_;
   std::vector<Meeting> meetings_;  // in the order in which partners came
   std::vector<double> pressed_;    // [N] (meetings, values of the port) on the body: state
   std::vector<double> reactions_;  // [N] (meetings, values of the partner) on partners: state
@@ -156,22 +160,20 @@ class SurfaceContact final : public PortContact {
   std::vector<double> slid_;
   // [N] (meetings that rub, values of the port) along the surface, on the body: state
   std::vector<double> shears_;
-  std::vector<double> shears_before_;
-  std::vector<OfPoint> of_points_;  // of a meeting
-  std::vector<double> shares_;      // (rows of a meeting) of what is of the same point
-  Substeps grid_;                   // of the window
+  std::vector<OfPoint> of_points_;              // of a meeting
+  std::vector<double> shares_, shears_before_;  // (rows of a meeting) of what is of a point
+  Substeps grid_;                               // of the window
   int substep_ = 0;
-  std::vector<double> anchors_;     // [m] (meetings that rub, values of the partner): state
-  std::vector<double> anchored_;    // (meetings) 1: anchors are those of now: state
-  std::vector<double> dissipated_;  // [J] (meetings) by friction: state
-  SeenGaps kept_gaps_;              // of a state that was saved: state
-  bool restored_ = false;           // they are those of now, as the rows are of another state
-  int looks_ = 0;                   // at the geometry, at this time
-  double time_ = 0.0;               // [s] that was solved for last
+  std::vector<double> anchors_;  // [m] (meetings that rub, values of the partner): state
+  std::vector<double> anchored_, dissipated_;  // (meetings) 1: anchors are of now; [J]: state
+  SeenGaps kept_gaps_;                         // of a state that was saved: state
+  bool restored_ = false;  // they are those of now, as the rows are of another state
+  int looks_ = 0;          // at the geometry, at this time
+  double time_ = 0.0;      // [s] that was solved for last
   // The problem of all rows, by component:
-  std::vector<double> directions_;  // (components, dim) normals and tangents
+  std::vector<double> directions_, row_gaps_;  // (components, dim) normals and tangents; [m]
   std::vector<FrictionRow> rows_;
-  bool rubs_ = false;
+  bool rubs_ = false, many_ = false;
   std::vector<std::size_t> first_term_;  // (components + 1)
   std::vector<Term> terms_;
   std::vector<int> touched_, number_;  // coordinates of the terms; (coordinates) theirs, or -1
@@ -180,12 +182,10 @@ class SurfaceContact final : public PortContact {
   bool complies_ = false;              // as these components do, with the columns of a version
   std::size_t version_ = 0;
   Vector gaps_, row_force_;  // [m] of the free pose, and slips to there; [N]
-  std::vector<double> row_gaps_;
-  Vector opened_;  // [m] gaps and slips under the forces
+  Vector opened_;            // [m] gaps and slips under the forces
   UnilateralBuffers buffers_;
   FrictionBuffers friction_buffers_;
   // Of many rows:
-  bool many_ = false;
   NearCompliance near_give_;
   std::vector<PressedSide> sides_;
   NearBlocks near_rows_;
