@@ -23,6 +23,9 @@ constexpr double worth_a_look = 1.0e-6;
 /// Of what a body stores: springs that have taken less bore some hundredths of the forces at most.
 constexpr double springs_may_take = 0.05;
 
+/// Of the forces on a body: springs that bear as much leave nothing to what may lie under it.
+constexpr double everything = 0.99;
+
 /// 0: the body does not tell it.
 double told(const Description& body, std::span<const double> values, const std::string& name) {
   const auto found = std::find(body.measures.begin(), body.measures.end(), name);
@@ -63,10 +66,6 @@ std::string stabilisation_note(const Description& body, std::span<const double> 
 
 }  // namespace
 
-bool is_stabilised(const Description& body) {
-  return std::ranges::find(body.measures, "stabilisation.share") != body.measures.end();
-}
-
 double borne_over_allowed(const Description& body, std::span<const double> values) {
   const double share = told(body, values, "stabilisation.share");
   const double allowed = told(body, values, "stabilisation.at_most");
@@ -77,6 +76,14 @@ std::string unheld(const Description& body, std::span<const double> values) {
   const double share = told(body, values, "stabilisation.share");
   const double allowed = told(body, values, "stabilisation.at_most");
   if (share <= allowed) return "";
+  if (share >= everything)
+    return fmt::format(
+        "body '{0}' presses on nothing at the end: its stabilisation bears all forces on it, {1:g} "
+        "% are allowed. Where there is a gap between it and what it shall lie on, put it where it "
+        "touches, or let it move farther in a step by a hundredth of bodies.{0}.integrator."
+        "quasi_static.stabilisation.stiffness (0.01 where nothing is said); else hold it against "
+        "{2} by a constraint",
+        body.name, 100.0 * allowed, stabilised_motion(body, values));
   return fmt::format(
       "body '{0}' is held against {1} by nothing: its stabilisation bears {2:.3g} % of the forces "
       "on it at the end, {3:g} % are allowed. Hold it by a constraint, lay something in its way, "
@@ -87,7 +94,7 @@ std::string unheld(const Description& body, std::span<const double> values) {
 
 std::string sweeps_remedy(std::span<const Description* const> bodies) {
   for (const Description* body : bodies)
-    if (is_stabilised(*body))
+    if (body->stabilised)
       return fmt::format(
           "let windows be halved (schwarz.on_nonconvergence: halve), or hold the bodies that "
           "contact alone holds by stiffer springs (bodies.{}.integrator.quasi_static."

@@ -10,10 +10,6 @@ namespace abut {
 
 namespace {
 
-/// Turns of contact. Factors that hold up a body that would fall are not those of its residual, so
-/// that turns come nearer by a constant part.
-constexpr int most_turns = 4 * ContactTurns::most;
-
 /// A part solved in fewer iterations may be followed by one of twice its length.
 constexpr int few_iterations = 5;
 /// Times in a step that springs are stiffened.
@@ -317,7 +313,7 @@ NewtonReport QuasiStatic::part(Motion& motion, double end, Contact* contact) {
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
     if (report.converged() && change <= options_.newton.tolerance * buffers_.scale) break;
-    if (turn == most_turns)
+    if (turn == ContactTurns::most)
       return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
   }
   if (report.converged() && !balance.finish(motion)) return {NewtonReport::End::inadmissible};

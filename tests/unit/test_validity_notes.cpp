@@ -71,6 +71,13 @@ TEST(ValidityNotes, NameTheMotionThatNothingHolds) {
   EXPECT_NE(why(0.1, -0.2).find("turning as a whole"), std::string::npos);
 }
 
+TEST(ValidityNotes, SayThatNothingLiesUnderABodyWhoseSpringsBearAll) {
+  const std::string why = unheld(stabilised(), std::vector{1.0, 1.0, 0.01, 7.0, 1.0, 0.0, 1.0});
+  for (const char* word : {"body 'lid' presses on nothing", "a hundredth of bodies.lid.integrator",
+                           "against moving along -y"})
+    EXPECT_NE(why.find(word), std::string::npos) << why;
+}
+
 TEST(ValidityNotes, AreNoneWhereNothingWasTold) {
   EXPECT_TRUE(validity_notes(body_that_tells(), {}).empty());
   const Description silent;
