@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/dense.hpp"
 #include "subdomain_solver/fe/mesh.hpp"
+#include "subdomain_solver/model.hpp"
 
 namespace abut {
 

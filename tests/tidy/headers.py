@@ -1,9 +1,10 @@
 """Goal: every header stands alone.
 
 All start with #pragma once and open no namespace for their readers. x.cpp includes its x.hpp
-first, so compiling the project compiles those headers alone; contract/, which strangers include,
-and the headers of base/ without a .cpp are compiled alone here when a compiler is named (second
-argument).
+first, so compiling each file by itself compiles those headers alone. Releases compile several at
+once: of every type of ours that a header names, that header or one that it includes must have a
+declaration. contract/, which strangers include, and the headers of base/ without a .cpp are
+compiled alone here when a compiler is named (second argument).
 """
 
 import os
@@ -17,6 +18,9 @@ from findings import Finding, project_files, read_lines, run
 
 ALONE = ("base/", "contract/")
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)')
+DECLARED = re.compile(r"\b(?:struct|class|enum class|using|typename)\s+(\w+)")
+DEFINED = re.compile(r"^(?:(?:struct|class|enum class) (\w+)[^;{]*\{|using (\w+) =)", re.MULTILINE)
+NAMED = re.compile(r"(?<![\w.:>])[A-Z]\w+")  # what stands in a namespace or class is found by that
 
 
 def check_text(root: Path, name: str) -> list[Finding]:
@@ -45,6 +49,35 @@ def check_first_include(root: Path, name: str) -> list[Finding]:
     return [Finding(name, 1, f"does not include {own}", "include it first")]
 
 
+def check_names(root: Path, headers: list[str]) -> list[Finding]:
+    """Types of the product that a header names and nothing that it includes declares."""
+    lines = {name: [line.split("//")[0] for line in read_lines(root, name)] for name in headers}
+    code = {name: re.sub(r'"[^"]*"|#.*', "", "\n".join(lines[name])) for name in headers}
+    included = {name: [match[1] for line in lines[name] if (match := INCLUDE.match(line))]
+                for name in headers}
+    declared = {name: set(DECLARED.findall(code[name])) for name in headers}
+    places = {}
+    for name in headers:
+        if not name.startswith(("tests/", "bench/")):
+            for match in DEFINED.finditer(code[name]):
+                places.setdefault(match[1] or match[2], name)
+    found = []
+    for name in headers:
+        reached, waiting = set(), [name]
+        while waiting:
+            one = waiting.pop()
+            if one in code and one not in reached:
+                reached.add(one)
+                waiting += included[one]
+        known = set().union(*(declared[one] for one in reached))
+        for number, line in enumerate(code[name].split("\n"), start=1):
+            found += [Finding(name, number, f"{kind} is declared by nothing included",
+                              f'include "{places[kind]}"')
+                      for kind in sorted(set(NAMED.findall(line)))
+                      if kind in places and kind not in known]
+    return found
+
+
 def compile_alone(root: Path, names: list[str], compiler: str) -> list[Finding]:
     found = []
     with tempfile.TemporaryDirectory() as folder:
@@ -63,7 +96,9 @@ def compile_alone(root: Path, names: list[str], compiler: str) -> list[Finding]:
 
 def check(root: Path) -> list[Finding]:
     found, alone = [], []
-    for name in project_files(root):
+    names = project_files(root)
+    found += check_names(root, [name for name in names if name.endswith(".hpp")])
+    for name in names:
         if name.endswith(".hpp"):
             found += check_text(root, name)
             has_source = os.path.exists(root / (name[:-len(".hpp")] + ".cpp"))
