@@ -23,7 +23,7 @@ help:
 	@echo "make results   docs/RESULTS.md, measured anew (minutes)"
 	@echo "make extremes  docs/EXTREMES.md, measured anew"
 	@echo "make robustness  the tables of docs/ROBUSTNESS.md, measured anew (minutes)"
-	@echo "make reliability TRIALS=12  docs/RELIABILITY.md: runs killed at random moments and resumed"
+	@echo "make reliability KILLS=200  docs/RELIABILITY.md: runs killed at random moments and resumed"
 	@echo "make soak EXCHANGES=1000000 WINDOWS=1000000   long runs: memory, open files, rest (an hour)"
 	@echo "make clean   removes build/ (runs/ is yours and stays)"
 	@echo "Optional libraries are used when they are named: make build WITH=\"cholmod exodus\""
@@ -97,9 +97,9 @@ robustness: dependencies-test
 	@sh scripts/build.sh tests
 	/usr/bin/python3 scripts/robustness_document.py $(BIN)
 
-TRIALS ?= 12
+KILLS ?= 200
 reliability: build
-	/usr/bin/python3 bench/reliability.py $(BIN) $(TRIALS) >build/RELIABILITY.md; code=$$?; \
+	/usr/bin/python3 bench/reliability.py $(BIN) $(KILLS) >build/RELIABILITY.md; code=$$?; \
 	  echo >>build/RELIABILITY.md; sed -n '/^## Under sanitizers/,$$p' docs/RELIABILITY.md >>build/RELIABILITY.md; \
 	  mv build/RELIABILITY.md docs/; exit $$code
 
