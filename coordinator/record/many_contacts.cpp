@@ -39,13 +39,15 @@ void ManyContacts::on_window(const WindowReport& report) {
   }
 }
 
+/// A force of steps is that of the step that ends at its time.
 void ManyContacts::read_force(const Waveform& force, const PortReader& reader) {
   if (force.f.empty()) return;
+  const bool nodal = force.support != ForceSupport::step;
   double before = reader.compression(force, 0);
-  peak_ = std::max(peak_, before);
+  if (nodal) peak_ = std::max(peak_, before);
   for (std::size_t i = 1; i < force.size(); ++i) {
     const double now = reader.compression(force, i);
-    impulse_ += 0.5 * (before + now) * (force.time[i] - force.time[i - 1]);
+    impulse_ += 0.5 * ((nodal ? before : now) + now) * (force.time[i] - force.time[i - 1]);
     peak_ = std::max(peak_, now);
     before = now;
   }

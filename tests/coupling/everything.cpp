@@ -136,6 +136,31 @@ TEST(EverythingWithParts, TouchesByTheSurfaceThatHasThem) {
     EXPECT_NEAR(all->velocity(b), pairs->velocity(b), sweeps * speed) << b;
 }
 
+/// A block of one cell runs into another one, in passive windows of several steps, in each of which
+/// contact has a force of its own.
+TEST(EverythingInPassiveWindows, HasTheImpulseThatBodiesGet) {
+  std::string text;
+  for (const char* const name : {"comes", "stands"}) {
+    const bool comes = name[0] == 'c';
+    text += SolidText{.name = name,
+                      .material = unit_law("neo_hookean", 0.25),
+                      .integrator = "central_difference: {step: 0.02}",
+                      .position = {comes ? -1.0105 : 0.0, 0.0},
+                      .velocity = {comes ? 0.05 : 0.0, 0.0},
+                      .port = "skin",
+                      .side = "boundary",
+                      .block = block_in(2, {1.0, 1.0}, {1, 1})}
+                .text();
+  }
+  const auto result = run_text(scene_text(6.0, 0.1, text, "contact: {everything: {}}\n"));
+  ASSERT_TRUE(result->completed()) << result->end.reason;
+  EXPECT_GT(result->end.given_up.windows, 0);
+  const double got = result->rows.back().momentum[1] - result->rows.front().momentum[1];
+  ASSERT_GT(got, 0.025);  // [kg m/s], what a blow without rebound gives
+  // Flat sides meet: along the normal of both. Of some hundred steps' rounding.
+  EXPECT_NEAR(result->measure("contact.everything.impulse"), got, 1.0e-10 * got);
+}
+
 /// Bars in a row whose moduli and densities differ alike; the first comes, a little sideways.
 std::string chain(const std::vector<double>& ratios, const std::string& scheme, int steps,
                   double friction) {
