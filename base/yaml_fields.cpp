@@ -312,9 +312,13 @@ std::vector<std::string> Reader::refuse_unknown_keys(const Frame& frame) {
     const std::string& name = pair.first.Scalar();
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     meant.push_back(likely(name, known));
+    // Of {end: 2,5}, YAML makes a 2 and a key 5.
+    const bool decimals =
+        pair.second.IsNull() && name.find_first_not_of("0123456789") == std::string::npos;
     errors_.gather([&] {
       fail(join_path(frame.path, name), "is not a known key",
-           suggestion(name, known, "Allowed here:"));
+           decimals ? fmt::format("Decimals begin with a point, not a comma: .{}.", name)
+                    : suggestion(name, known, "Allowed here:"));
     });
   }
   return meant;
