@@ -128,7 +128,8 @@ void CsvHistory::end_row(TextFile& file) {
 }
 
 void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
-  const double time = report.responses.front().records[record].time;
+  const std::vector<BodyRecord>& records = report.responses.front().records;
+  const double time = records[record].time;
   row_.clear();
   fmt::format_to(std::back_inserter(row_), "{}", time);
   std::size_t next = 0;
@@ -137,7 +138,8 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
     for (; next < ports_.size() && ports_[next].body == static_cast<int>(b); ++next) {
       PortColumn& column = ports_[next];
       const Waveform& trace = response.ports[column.port].trace;
-      column.values = trace.empty() ? PortMeans{} : column.reader.at(trace, time);
+      const double before = record > 0 ? records[record - 1].time : report.window.begin;
+      column.values = trace.empty() ? PortMeans{} : column.reader.since(trace, before, time);
       const int dim = column.reader.port().geometry.dim;
       for (int axis = 0; axis < dim; ++axis) number(column.values.u[axis]);
       for (int axis = 0; axis < dim; ++axis) number(column.values.v[axis]);

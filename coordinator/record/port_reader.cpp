@@ -35,6 +35,14 @@ PortMeans PortReader::at(const Waveform& trace, double time) {
   return out;
 }
 
+PortMeans PortReader::since(const Waveform& trace, double from, double to) {
+  PortMeans out = at(trace, to);
+  if (trace.f.empty() || trace.support != ForceSupport::step || !(from < to)) return out;
+  trace.impulse(from, to, values_);
+  out.f = gathered(1.0 / (to - from));
+  return out;
+}
+
 double PortReader::compression(const Waveform& trace, std::size_t i) const {
   const std::size_t width = index(trace.width), dim = index(port_->geometry.dim);
   if (dim > 1) {

@@ -26,6 +26,9 @@ class PortReader {
 
   /// At a time, which is clipped to the waveform's. Precondition: the waveform is not empty.
   PortMeans at(const Waveform& trace, double time);
+  /// The same at the end of an interval, of which forces that are constant in steps are the mean:
+  /// those of two steps may be far apart, and their sum alone is the impulse.
+  PortMeans since(const Waveform& trace, double from, double to);
   /// Force along the inward normal at stored time i [N]: positive in compression.
   double compression(const Waveform& trace, std::size_t i) const;
   /// Mean along x of a field of the waveform at stored time i; 0 when the field is absent.

@@ -132,6 +132,18 @@ TEST_F(RecordFiles, HistoryNumbersReadBackExactly) {
   }
 }
 
+/// Two steps in a row, of a force that grows: that of the last step alone is no mean.
+TEST_F(RecordFiles, HistoryTellsTheMeanOfForcesThatAreConstantInSteps) {
+  HandMadeRun run;
+  run.f = [](int, double time) { return time; };
+  CsvHistory history(directory_, nullptr);
+  run.play(history);
+  const std::vector<std::vector<std::string>> rows = table("history.csv");
+  const std::size_t force = column(rows, "left.tip.force [N]");
+  for (int k = 0; k < 30; ++k)
+    EXPECT_NEAR(std::stod(rows[k + 1][force]), 0.1 * (k + 0.5), roundoff(100.0, 0.1 * (k + 1)));
+}
+
 TEST_F(RecordFiles, ClosedFormHasTheSameTimesAndTheColumnsOfTheHistory) {
   HandMadeRun run;
   CsvHistory history(directory_, &run.form);
