@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "subdomain_solver/contact/surface_contact.hpp"
 
@@ -27,7 +28,12 @@ void SurfaceContact::begin_looks(double time, const Vector& free) {
   for (Meeting& m : meetings_)
     if (m.obstacle->acts()) m.obstacle->place(time);
   pose(free);
-  for (Own& own : surfaces_) own.travel = own.farthest = travelled(own);
+  double place = 0.0;
+  for (Own& own : surfaces_) {
+    own.travel = own.farthest = travelled(own);
+    for (const double at : own.pose) place = std::max(place, std::abs(at));
+  }
+  rounding_ = 4.0 * std::numeric_limits<double>::epsilon() * place;
   force_.setZero(free.size());
   for (const Meeting& m : meetings_) {
     const Own& own = surfaces_[m.own];

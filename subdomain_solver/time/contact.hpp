@@ -39,9 +39,12 @@ class Contact {
   virtual const Vector* solve(double time, const Vector& free, Compliance& give) = 0;
   /// Why the last call found none, for people; empty: it found some, or has nothing to say.
   const std::string& missing() const { return missing_; }
+  /// [m] of the last call: places nearer to each other are the same but for rounding.
+  double rounding() const { return rounding_; }
 
  protected:
   std::string missing_;
+  double rounding_ = 0.0;
 };
 
 }  // namespace abut

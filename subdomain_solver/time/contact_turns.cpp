@@ -98,9 +98,11 @@ bool ContactTurns::press(double time, const Vector& q, int turn, Vector& x, doub
     const int place = free_.place(touched_[k]);
     if (place >= 0) unit_(place) = load_ * factor_ * change_(static_cast<Eigen::Index>(k));
   }
+  rounded_ = true;
   if (unit_.isZero(0.0)) return true;
   if (!solver_.solve(unit_, answer_)) return false;
   x += answer_;
+  rounded_ = answer_.lpNorm<Eigen::Infinity>() <= factor_ * contact_->rounding();
   return true;
 }
 

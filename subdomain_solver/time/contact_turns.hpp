@@ -34,6 +34,9 @@ class ContactTurns final : private Compliance {
   /// Forces for where the balance without change of them has led, q [m] (dofs); takes a part of
   /// their change to the unknowns x (free) too. `change`: [N] of all. False: there is no answer.
   [[nodiscard]] bool press(double time, const Vector& q, int turn, Vector& x, double& change);
+  /// Whether the last change moved x by no more than the rounding of places: of surfaces that just
+  /// touch, forces are that rounding, and never settle to small parts of it.
+  bool rounded() const { return rounded_; }
 
  private:
   const Vector* column(int k) override;
@@ -54,6 +57,7 @@ class ContactTurns final : private Compliance {
   double load_ = 0.0, move_ = 0.0;
   Vector change_, last_change_;  // [N] (contact) that contact asked for, in this turn and before
   double factor_ = 1.0;          // of the change that is taken
+  bool rounded_ = false;
 };
 
 }  // namespace abut

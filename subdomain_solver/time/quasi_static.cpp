@@ -313,6 +313,7 @@ NewtonReport QuasiStatic::part(Motion& motion, double end, Contact* contact) {
     double change = 0.0;
     if (!balance.press(x, turn, change)) return {NewtonReport::End::singular};
     if (report.converged() && change <= options_.newton.tolerance * buffers_.scale) break;
+    if (turn == ContactTurns::most && report.converged() && contact_.rounded()) break;
     if (turn == ContactTurns::most)
       return {NewtonReport::End::not_converged, turn, change / buffers_.scale};
   }
