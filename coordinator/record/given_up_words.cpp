@@ -83,7 +83,10 @@ std::string given_up_words(const GivenUp& up, std::int64_t windows,
   if (up.windows == 0 && !repaid) return {};
   std::string text;
   if (up.windows > 0) text = windows_words(up, windows);
-  if (up.windows > 0 && !up.statics) text += "; " + joules_words(up);
+  if (up.windows > 0)
+    text += "; " + (up.statics ? "work that is told of them is of bodies on their way to rest, so "
+                                 "the account of energy stays open"
+                               : joules_words(up));
   if (repaid)
     text += fmt::format(
         "{}{:.3g} J of {:.3g} J that accurate windows had gained were taken back from the swinging "
