@@ -67,12 +67,13 @@ TEST(GivenUp, LeavesOutWhatIsNothing) {
 TEST(GivenUp, TellsWhereStaticsDidNotRest) {
   const GivenUp up{
       .statics = true, .windows = 6, .unsettled = 4, .unbalanced = 0.07, .largest = 1.0};
-  EXPECT_EQ(Told().words(up),
-            "3 % of the windows were solved passively, without inertia, by forces on nodes that "
-            "are right to some hundredths, and after 4 of their steps bodies did not rest yet: "
-            "forces that were not in balance are up to 7 % of the most that a step began with; work "
-            "that is told of them is of bodies on their way to rest, so the account of energy stays "
-            "open");
+  EXPECT_EQ(
+      Told().words(up),
+      "3 % of the windows were solved passively, without inertia, by forces on nodes that "
+      "are right to some hundredths, and after 4 of their steps bodies did not rest yet: "
+      "forces that were not in balance are up to 7 % of the most that a step began with; work "
+      "that is told of them is of bodies on their way to rest, so the account of energy stays "
+      "open");
 }
 
 TEST(GivenUp, NamesTheRemedyThatHelps) {
