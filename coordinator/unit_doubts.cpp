@@ -17,6 +17,7 @@ namespace {
 constexpr double far_below = 1000.0;  // of a step and its limit
 constexpr double far_apart = 1.0e6;   // of two sizes
 constexpr double rounding = 1.0e-9;   // of such ratios
+constexpr double crushing = 0.5;      // speed of a body over that of its waves
 
 double size_of(const BodyFacts& facts) {  // [m] from corner to corner
   double size = 0.0;
@@ -56,6 +57,18 @@ void look_at_step(const Description& body, const BodyFacts& facts, const UnitSys
              "step.");
 }
 
+/// What meets something at the speed of its waves is strained by about 1.
+void look_at_speed(const Description& body, const BodyFacts& facts, const UnitSystem& units,
+                   Doubts& doubts) {
+  if (!(facts.wave_speed > 0.0) || facts.speed < crushing * facts.wave_speed) return;
+  doubts.add(body.name, "initial.velocity",
+             fmt::format("{0:.3g} {2} is {1:.2g} times the {3:.3g} {2} of the body's fastest wave",
+                         facts.speed, facts.speed / facts.wave_speed, units.word("m/s"),
+                         facts.wave_speed),
+             "Look at the units of the velocity and of the material: what meets anything so fast "
+             "is crushed.");
+}
+
 /// The smallest body beside the largest.
 void look_at_sizes(std::span<const Description* const> bodies,
                    std::span<const std::optional<BodyFacts>> facts, const UnitSystem& units,
@@ -86,6 +99,7 @@ std::vector<InputError> unit_doubts(std::span<const Description* const> bodies,
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (bodies[b] == nullptr || !facts[b]) continue;
     look_at_step(*bodies[b], *facts[b], document.units(), doubts);
+    look_at_speed(*bodies[b], *facts[b], document.units(), doubts);
     if (!facts[b]->material_doubt.empty())
       doubts.add(bodies[b]->name, facts[b]->material_key, facts[b]->material_doubt,
                  facts[b]->material_remedy);

@@ -73,6 +73,20 @@ TEST(UnitDoubts, TellAStepFarBelowItsLimit) {
   EXPECT_NE(doubt.remedy.find("units of the step"), std::string::npos);
 }
 
+TEST(UnitDoubts, TellABodyThatIsAboutAsFastAsItsWaves) {
+  TwoBodies two;
+  two.facts[0]->speed = 2499.0;
+  EXPECT_TRUE(two.doubts().empty());
+  two.facts[0]->speed = 10000.0;
+  ASSERT_EQ(two.doubts().size(), 1u);
+  const InputError doubt = two.doubts()[0];
+  EXPECT_EQ(doubt.where, "scene.yaml:3: bodies.small.initial.velocity");
+  EXPECT_EQ(doubt.what_is_wrong, "1e+04 m/s is 2 times the 5e+03 m/s of the body's fastest wave");
+  EXPECT_NE(doubt.remedy.find("units of the velocity"), std::string::npos);
+  two.facts[0]->wave_speed = 0.0;  // nothing deforms
+  EXPECT_TRUE(two.doubts().empty());
+}
+
 TEST(UnitDoubts, KnowTheLimitOfImplicitStepsFromTheMesh) {
   TwoBodies two;
   two.small.stable_step = none;
