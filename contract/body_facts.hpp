@@ -10,7 +10,7 @@ struct BodyFacts {
   // [m] (dim) corners of the box around its mesh where the scene puts it; empty: it has no mesh
   std::vector<double> low, high;
   double wave_speed = 0.0;  // [m/s] of the fastest wave at rest; 0: nothing deforms
-  double speed = 0.0;       // [m/s] with which all of it begins
+  double speed = 0.0;       // [m/s] with which all of it begins, of a solid
   // [s] up to which explicit steps would be stable on this mesh; 0: nothing deforms in time, or not
   // computed
   double explicit_limit = 0.0;
