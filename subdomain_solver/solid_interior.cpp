@@ -192,7 +192,7 @@ void SolidInterior::describe(std::string name, const std::vector<PortNodes>& por
   const Integrator::Abilities& scheme = parts_.scheme.integrator->able();
   description_.quasi_static = scheme.statics != nullptr;
   description_.loose = parts_.loose;
-  description_.stabilised = scheme.statics != nullptr && scheme.statics->stabilised();
+  description_.stabilised = stabilised();
   description_.stable_step = parts_.scheme.stable_step;
   description_.can.force = true;
   const bool small = parts_.problem->model->is_linear() && parts_.deforms;

@@ -50,7 +50,6 @@ class QuasiStatic final : public Integrator {
   /// bore, over what is allowed at the end of a run; 0 of one that is not stabilised.
   double tell_held(const Vector& force, std::span<const double> gone, const Vector& acting,
                    Motion& motion);
-  bool stabilised() const { return stabilisation_.has_value(); }
   /// [N] (k) of what acts, along the loose motions, in the last step; of what is stabilised
   /// nothing.
   std::span<const double> unbalanced() const {
