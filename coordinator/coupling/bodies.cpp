@@ -86,6 +86,7 @@ Bodies::Bodies(std::vector<Subdomain*> subdomains, double window)
       window_(window),
       requests_(subdomains_.size()),
       responses_(subdomains_.size()),
+      answers_(subdomains_.size()),
       poses_(subdomains_.size()),
       partners_(subdomains_.size()),
       everybody_(subdomains_.size()),
@@ -164,17 +165,18 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   std::optional<Failed> failed;
   double slowest = 0.0;
   for (int b : bodies) {
-    Response& response = responses_[b];
+    Response& response = answers_[b];
     Outcome outcome = finish((*this)[b], response);
-    for (const auto& pose : poses_[b]) pose->forget();
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
       failure->detail = "body '" + describe(b).name + "': " + failure->detail;
       if (!failed) failed = std::move(*failure);
       continue;
     }
-    compute_seconds_[b] += response.compute_seconds;
-    slowest = std::max(slowest, response.compute_seconds);
+    std::swap(responses_[b], response);
+    for (const auto& pose : poses_[b]) pose->forget();
+    compute_seconds_[b] += responses_[b].compute_seconds;
+    slowest = std::max(slowest, responses_[b].compute_seconds);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
   if (overhead_.size() < overhead_samples && !bodies.empty()) {

@@ -158,6 +158,9 @@ class Bodies {
   double window_;  // [s]
   std::vector<Advance> requests_;
   std::vector<Response> responses_;
+  // Where answers arrive: what a body that fails leaves in a response is nobody's answer, and not
+  // the same in its own process and in this one.
+  std::vector<Response> answers_;
   std::vector<std::vector<std::unique_ptr<PortPose>>> poses_;  // by body and port
   std::vector<std::vector<int>> partners_;                     // met so far, by body and port
   int meetings_ = 0;
