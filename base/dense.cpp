@@ -135,6 +135,7 @@ void DenseFactors::solve(const Vector& right, Vector& x) const {
 }
 
 Vector DenseFactors::pivots() const {
+  if (const auto* ldlt = std::get_if<2>(&kept_->factors)) return ldlt->vectorD();
   const auto* lu = std::get_if<0>(&kept_->factors);
   ABUT_ASSERT(lu != nullptr);
   return lu->matrixLU().diagonal();

@@ -71,7 +71,7 @@ class DenseFactors {
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   void solve(const Eigen::VectorXd& right, Eigen::VectorXd& x) const;  ///< not in place
-  /// Of LU factors: the diagonal of U.
+  /// Of LU factors the diagonal of U; of LDL^T D, in the order in which pivots were taken.
   Eigen::VectorXd pivots() const;
 
  private:

@@ -13,8 +13,6 @@ namespace {
 
 /// Of what sides have parted by, taken back in a step: all of it at once would make them swing.
 constexpr double taken_back = 0.1;
-/// Rows that say the same have no unique impulses; this share of the largest compliance picks some.
-constexpr double regularised_tie = 1.0e-10;
 
 Eigen::Map<Eigen::VectorXd> view(std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
@@ -216,9 +214,9 @@ PassiveTies::Answer PassiveTies::answer(int lead,
   }
   const Eigen::MatrixXd compliance = block_compliance(cluster), rows = operator_of(cluster);
   cluster.across = rows * compliance;
-  Eigen::MatrixXd own = cluster.across * rows.transpose();
-  own.diagonal().array() += regularised_tie * own.diagonal().maxCoeff();
-  cluster.stiffness.compute(own);
+  // Rows that say the same, and those of what supports hold, have no unique impulses: the least are
+  // theirs. Any others would add up what roundings leave of such rows, step by step.
+  cluster.stiffness.compute(cluster.across * rows.transpose());
   const Eigen::VectorXd seen = of_cluster(cluster, velocity_), aim = of_cluster(cluster, aim_);
   // Of a share s of what is aimed at, impulses that reach it do s (s a - b) of work.
   const Eigen::VectorXd stiff = cluster.stiffness.solve(aim);

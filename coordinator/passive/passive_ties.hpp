@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "base/dense.hpp"
+#include "base/semidefinite.hpp"
 #include "contract/passive.hpp"
 #include "coordinator/coupling/bodies.hpp"
 #include "coordinator/coupling/tie.hpp"
@@ -80,11 +80,11 @@ class PassiveTies {
     std::vector<std::array<std::int32_t, 3>> values;  // body, port, point of every dim values
     std::vector<Eigen::Index> first;                  // (ties) of their rows
     Eigen::Index rows = 0;
-    Eigen::MatrixXd across;                   // [1/kg] (rows, values) T C
-    Eigen::MatrixXd contact;                  // [1/kg] (rows, contact values) of it
-    DenseFactors stiffness{Factoring::ldlt};  // of T C T^T
-    Eigen::VectorXd before;                   // impulses that make ties hold without more contact
-    double share = 1.0;                       // of what is aimed at
+    Eigen::MatrixXd across;         // [1/kg] (rows, values) T C
+    Eigen::MatrixXd contact;        // [1/kg] (rows, contact values) of it
+    SemidefiniteFactors stiffness;  // of T C T^T
+    Eigen::VectorXd before;         // impulses that make ties hold without more contact
+    double share = 1.0;             // of what is aimed at
   };
   Eigen::VectorXd of_cluster(const Cluster& cluster, std::span<const Eigen::VectorXd> values) const;
   Eigen::VectorXd part(const PassiveTie& tie, std::size_t side,
