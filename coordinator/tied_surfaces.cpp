@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "base/nearly.hpp"
 #include "coordinator/coupling/compare/alternating_tie.hpp"
 #include "coordinator/coupling/compare/dashpot_tie.hpp"
 #include "coordinator/coupling/compare/motion_rows.hpp"
@@ -32,7 +33,7 @@ void check_side(const Description& body, const PortGeometry& face, const std::st
 
 int coarser_mesh(const std::array<Side, 2>& sides, const Bodies& bodies) {
   const auto spacing = [&](std::size_t s) { return bodies.port(sides[s]).geometry.spacing; };
-  return spacing(0) >= spacing(1) ? 0 : 1;
+  return clearly_less(spacing(0), spacing(1)) ? 1 : 0;
 }
 
 /// The side of longer steps has the force: on the other one energy would be kept and the motion
@@ -43,7 +44,7 @@ int coarser_steps(const std::array<Side, 2>& sides, const Bodies& bodies) {
     const Description& body = bodies.describe(sides[s].body);
     step[s] = std::isinf(body.mass) ? 0.0 : body.step > 0.0 ? body.step : bodies.window();
   }
-  if (step[0] != step[1]) return step[0] > step[1] ? 0 : 1;
+  if (!nearly_equal(step[0], step[1])) return step[0] > step[1] ? 0 : 1;
   return coarser_mesh(sides, bodies);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/nearly.hpp"
 #include "contract/substeps.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/port_jacobian.hpp"
@@ -57,22 +58,22 @@ bool BodyOrder::comes_before(int before, int after) const {
 int Roles::wish(const Joint& joint) {
   double moved[2], spacing[2], step[2];
   for (std::size_t s : {0u, 1u}) step[s] = bodies_.describe(joint.sides[s].body).step;
-  if (joint.tied() && step[0] != step[1]) return coarser_side(joint, bodies_);
+  if (joint.tied() && !nearly_equal(step[0], step[1])) return coarser_side(joint, bodies_);
   for (std::size_t s : {0u, 1u}) {
     moved[s] = moved_over(joint.sides[s], bodies_, window_);
     spacing[s] = bodies_.port(joint.sides[s]).geometry.spacing;
   }
   if (moved[0] > similar * moved[1]) return 0;
   if (moved[1] > similar * moved[0]) return 1;
-  if (spacing[0] != spacing[1]) return spacing[0] < spacing[1] ? 0 : 1;
-  return step[1] < step[0] ? 1 : 0;
+  if (!nearly_equal(spacing[0], spacing[1])) return spacing[0] < spacing[1] ? 0 : 1;
+  return clearly_less(step[1], step[0]) ? 1 : 0;
 }
 
 std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies) {
   const Description &a = bodies.describe(joint.sides[0].body),
                     &b = bodies.describe(joint.sides[1].body);
   const bool moves = std::isfinite(a.mass) && std::isfinite(b.mass);
-  if (!moves || a.step <= 0.0 || b.step <= 0.0 || a.step == b.step) return std::nullopt;
+  if (!moves || a.step <= 0.0 || b.step <= 0.0 || nearly_equal(a.step, b.step)) return std::nullopt;
   return a.step < b.step ? 0 : 1;
 }
 
@@ -106,7 +107,7 @@ int contact_finder(const Joint& joint, const Bodies& bodies) {
   }
   if (const std::optional<int> shorter = shorter_steps(joint, bodies)) return *shorter;
   if (yields[0] != yields[1]) return yields[0] ? 1 : 0;
-  return spacing[0] <= spacing[1] ? 0 : 1;
+  return clearly_less(spacing[1], spacing[0]) ? 1 : 0;
 }
 
 void Roles::settle(Joint& joint, int kinematic, bool may_turn) {
@@ -194,7 +195,7 @@ double stable_step_in_contact(const Joint& joint, Bodies& bodies, double length)
 int coarser_side(const Joint& joint, const Bodies& bodies) {
   const double step0 = bodies.describe(joint.sides[0].body).step;
   const double step1 = bodies.describe(joint.sides[1].body).step;
-  return step1 > step0 ? 1 : 0;
+  return clearly_less(step0, step1) ? 1 : 0;
 }
 
 void BodyOrder::state(Archive& archive) {
