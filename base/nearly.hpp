@@ -11,6 +11,5 @@ inline bool nearly_equal(double a, double b) {
   constexpr double rounding = 1.0e-9;
   return a == b || std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b));
 }
-inline bool clearly_less(double a, double b) { return a < b && !nearly_equal(a, b); }
 
 }  // namespace abut

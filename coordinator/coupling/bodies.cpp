@@ -5,6 +5,7 @@
 #include <chrono>
 #include <new>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -183,6 +184,13 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
     overhead_.push_back(static_cast<float>(wall.count() - slowest));
   }
   return failed;
+}
+
+int Bodies::first_named(const std::array<Side, 2>& sides) const {
+  const auto name = [this](const Side& side) {
+    return std::tie(describe(side.body).name, port(side).name);
+  };
+  return name(sides[1]) < name(sides[0]) ? 1 : 0;
 }
 
 void Bodies::see_anew() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -51,6 +52,9 @@ class Bodies {
     ++exchanges_;
     return *subdomains_[body]->passive();
   }
+  /// Which of two sides comes first by its body's name and its port's: what chooses between sides
+  /// that are alike, however a scene lists bodies, interfaces and their sides.
+  int first_named(const std::array<Side, 2>& sides) const;
   const Port& port(const Side& side) const { return describe(side.body).ports[side.port]; }
   Advance& request(int body) { return requests_[body]; }
   const Advance& request(int body) const { return requests_[body]; }
