@@ -7,38 +7,36 @@ namespace abut {
 
 namespace {
 
-/// Of the largest diagonal: smaller ones are none, and this is added where all rows count.
-constexpr double none = 1.0e-10;
-/// Of a row: what remains of one that follows from others.
+/// Of the largest diagonal: is added where all rows count.
+constexpr double little = 1.0e-10;
+/// Of a unit: what remains of a row that follows from others.
 constexpr double remains = 1.0e-8;
 /// Times what was added: pivots that are larger are of rows that do not follow from others.
 constexpr double surely = 1.0e4;
 
 }  // namespace
 
-void SemidefiniteFactors::compute(const Eigen::MatrixXd& matrix) {
+void SemidefiniteFactors::compute(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& units) {
   rank_ = matrix.rows();
   whole_ = true;
   if (rank_ == 0) return;
-  const double added = none * matrix.diagonal().maxCoeff();
+  const double added = little * matrix.diagonal().maxCoeff();
   Eigen::MatrixXd regular = matrix;
   regular.diagonal().array() += added;
   factors_.compute(regular);
   if (factors_.pivots().minCoeff() > surely * added) return;
-  find_rows(matrix);
+  find_rows(matrix, units);
   whole_ = rank_ == matrix.rows();
   if (!whole_) inner_.compute(lower_.transpose() * lower_);
 }
 
 /// L, a column for each row that is found to count, the most independent one first.
-void SemidefiniteFactors::find_rows(const Eigen::MatrixXd& matrix) {
+void SemidefiniteFactors::find_rows(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& units) {
   const Eigen::Index size = matrix.rows();
-  const double least = none * matrix.diagonal().maxCoeff();
-  Eigen::ArrayXd scale = matrix.diagonal(), left = Eigen::ArrayXd::Ones(size);
+  Eigen::ArrayXd scale(size), left(size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const bool counts = scale(i) > least;
-    scale(i) = counts ? 1.0 / std::sqrt(scale(i)) : 0.0;
-    left(i) = counts ? 1.0 : 0.0;
+    scale(i) = units(i) > 0.0 ? 1.0 / std::sqrt(units(i)) : 0.0;
+    left(i) = matrix(i, i) * scale(i) * scale(i);
   }
   lower_.setZero(size, size);
   for (rank_ = 0; rank_ < size; ++rank_) {

@@ -12,10 +12,11 @@ namespace abut {
 namespace {
 
 /// Pivots of rows that say the same twice, at points where three bodies meet, or where both sides
-/// are held; all rows give way by one in their own units.
+/// are held; in units of their joints. Nodes that meet up to a share d of an edge, as the digits of
+/// a file tell them, leave d^2 of such rows: they would have forces 1/d times as large as others.
 struct Rounding {
-  double singular = 1.0e-13;  // of the largest, below which there may be such
-  double nothing = 1.0e-10;   // below which a combination of rows moves nothing
+  double singular = 1.0e-8;  // of the largest, below which there may be such
+  double nothing = 1.0e-9;   // below which a combination of rows moves nothing
 };
 /// Of kernels that are differences of motions under a light push.
 constexpr Rounding light{1.0e-7, 1.0e-6};
@@ -230,6 +231,11 @@ void DenseTieKernel::find_scale(const TieLayout& layout) {
   double most = 0.0;
   for (Eigen::Index i = 0; i < layout.size; ++i)
     if (!carries[i]) most = std::max(most, own[i]);
+  for (const TieLayout::Member& member : layout.members) {
+    if (member.carried >= 0) continue;
+    auto rows = own.segment(member.inner, Eigen::Index{member.width} * member.steps);
+    rows.setConstant(rows.maxCoeff());
+  }
   scale_.setOnes(layout.size);
   if (most == 0.0) return;
   for (Eigen::Index i = 0; i < layout.size; ++i)

@@ -216,7 +216,13 @@ PassiveTies::Answer PassiveTies::answer(int lead,
   cluster.across = rows * compliance;
   // Rows that say the same, and those of what supports hold, have no unique impulses: the least are
   // theirs. Any others would add up what roundings leave of such rows, step by step.
-  cluster.stiffness.compute(cluster.across * rows.transpose());
+  const Eigen::MatrixXd own = cluster.across * rows.transpose();
+  Eigen::VectorXd units = own.diagonal();  // of a tie, whose rows are those of one surface
+  for (std::size_t k = 0; k < cluster.ties.size(); ++k) {
+    auto of_tie = units.segment(cluster.first[k], impulses_[index(cluster.ties[k])].size());
+    of_tie.setConstant(of_tie.maxCoeff());
+  }
+  cluster.stiffness.compute(own, units);
   const Eigen::VectorXd seen = of_cluster(cluster, velocity_), aim = of_cluster(cluster, aim_);
   // Of a share s of what is aimed at, impulses that reach it do s (s a - b) of work.
   const Eigen::VectorXd stiff = cluster.stiffness.solve(aim);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace abut {
 
@@ -14,11 +15,26 @@ Eigen::Vector3d vector_at(const std::vector<double>& values, std::size_t point, 
   return out;
 }
 
+/// Of all pairs, once or more, in an order that is that of no list of the scene: where impulses are
+/// not unique, as at a corner that two joined bodies share, it chooses. What deforms comes first, as
+/// it gives back what it takes; then names.
+std::vector<Side> sides_by_name(std::span<const TouchingPair> pairs, const Bodies& bodies) {
+  std::vector<Side> sides;
+  for (const TouchingPair& pair : pairs)
+    sides.insert(sides.end(), pair.sides.begin(), pair.sides.end());
+  std::ranges::sort(sides, {}, [&bodies](const Side& side) {
+    const bool rigid = !(bodies.port(side).geometry.transit > 0.0);
+    return std::tuple(rigid, bodies.describe(side.body).name, bodies.port(side).name);
+  });
+  return sides;
+}
+
 }  // namespace
 
 TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bodies& bodies)
     : bodies_(bodies) {
   if (!pairs.empty()) dim_ = bodies.port(pairs.front().sides[0]).geometry.dim;
+  for (const Side& side : sides_by_name(pairs, bodies)) group_of(side, bodies);
   std::vector<std::array<int, 2>> groups;
   for (const TouchingPair& pair : pairs)
     groups.push_back({group_of(pair.sides[0], bodies), group_of(pair.sides[1], bodies)});
