@@ -15,9 +15,9 @@ Eigen::Vector3d vector_at(const std::vector<double>& values, std::size_t point, 
   return out;
 }
 
-/// Of all pairs, once or more, in an order that is that of no list of the scene: where impulses are
-/// not unique, as at a corner that two joined bodies share, it chooses. What deforms comes first, as
-/// it gives back what it takes; then names.
+/// Of all pairs, once or more, in an order that is that of no list of the scene: where impulses
+/// are not unique, as at a corner that two joined bodies share, it chooses. What deforms comes
+/// first, as it gives back what it takes; then names.
 std::vector<Side> sides_by_name(std::span<const TouchingPair> pairs, const Bodies& bodies) {
   std::vector<Side> sides;
   for (const TouchingPair& pair : pairs)
