@@ -46,6 +46,7 @@ struct PassiveReply {
   // Of bodies without inertia that contact alone holds: what held it in the step, as a part of the
   // forces on it, over what is allowed at the end of a run; 0 of all others
   double held = 0.0;
+  double compute_seconds = 0.0;  // wall time inside the solver; never decides anything
 };
 
 /// A body in its passive form. Whether it is in it belongs to its state: Subdomain::restore takes

@@ -91,14 +91,17 @@ Outcome MeteredBody::Passive::leave(double time, double& lost) {
 }
 
 void MeteredBody::Passive::start(const PassiveStep& step) {
-  body_.meter_.count(body_.number_);
+  body_.meter_.start();
   if (body_.spans_ != nullptr) body_.spans_->asked(body_.number_);
   form().start(step);
 }
 
 Outcome MeteredBody::Passive::finish(PassiveReply& reply) {
+  reply.compute_seconds = 0.0;  // of a body that fails it would be an earlier one's
   Outcome outcome = body_.heard([&] { return form().finish(reply); });
-  if (body_.spans_ != nullptr) body_.spans_->answered(body_.number_, "passive step", 0.0);
+  body_.meter_.finish(body_.number_, reply.compute_seconds);
+  if (body_.spans_ != nullptr)
+    body_.spans_->answered(body_.number_, "passive step", reply.compute_seconds);
   return outcome;
 }
 

@@ -14,8 +14,8 @@
 
 namespace abut {
 
-/// A body, and what it is waited for. Requests of its passive form are counted and not timed, as
-/// replies do not say what they took; a file of spans is told of all that takes time.
+/// A body, and what it is waited for; a file of spans is told of all that takes time. Entries into
+/// its passive form, leaves and damping are counted and not timed.
 class MeteredBody final : public Subdomain {
  public:
   /// All must outlive it; `number`: of the body among those of the meter; `spans` may be null.

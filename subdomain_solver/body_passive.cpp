@@ -1,5 +1,6 @@
 // The passive form of a body, as others see it.
 
+#include <chrono>
 #include <utility>
 
 #include "base/assert.hpp"
@@ -22,9 +23,12 @@ Outcome Body::Passive::finish(PassiveReply& reply) {
   ABUT_ASSERT(step_ != nullptr);
   const PassiveStep& step = *std::exchange(step_, nullptr);
   PassiveBody& own = *body_.interior_->able().passive;
+  const auto began = std::chrono::steady_clock::now();
   body_.report_progress();  // a window may have thousands of steps, many of them without an answer
   if (auto failed = body_.patiently([&] { return own.pass(step, reply); })) return *failed;
   if (auto failed = body_.tell(reply.record, step.end)) return *failed;
+  reply.compute_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return Advanced{};
 }
 

@@ -144,6 +144,8 @@ class Bodies {
   double window() const { return window_; }  // [s] a whole one
   double longest_step() const;               // [s] of those that have one; a window where none has
   std::int64_t exchanges() const { return exchanges_; }
+  /// [s] that a body has told of a passive step.
+  void add_compute(int body, double seconds) { compute_seconds_[index(body)] += seconds; }
   const std::vector<double>& compute_seconds() const { return compute_seconds_; }
   double overhead_median() const;  // [s] per exchange: wall minus compute
 

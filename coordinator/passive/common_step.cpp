@@ -314,6 +314,7 @@ std::optional<Failed> CommonStep::advance(bool all) {
   std::optional<Failed> first;
   for (const int b : moved) {
     Outcome outcome = bodies_[b].passive()->finish(tried_[index(b)]);
+    bodies_.add_compute(b, tried_[index(b)].compute_seconds);
     if (Failed* failed = std::get_if<Failed>(&outcome); failed != nullptr && !first) {
       culprit_ = b;
       first = Failed{failed->cause, failed->time,

@@ -12,7 +12,7 @@ namespace {
 static_assert(sizeof(PassiveStep) == 3 * sizeof(double) + 2 * sizeof(std::vector<double>));
 static_assert(sizeof(PassiveReply::Port) == 2 * sizeof(std::vector<double>));
 static_assert(sizeof(PassiveReply) ==
-              2 * sizeof(std::vector<double>) + sizeof(BodyRecord) + 2 * sizeof(double));
+              2 * sizeof(std::vector<double>) + sizeof(BodyRecord) + 3 * sizeof(double));
 
 using Step = v1::PassiveStep;
 using Stepped = v1::PassiveStepped;
@@ -126,6 +126,7 @@ void decode(Bytes bytes, const Description& body, PassiveStep& to) {
 }
 
 void encode(const PassiveReply& from, WireWriter& to) {
+  to.number(Stepped::kComputeSecondsFieldNumber, from.compute_seconds);
   to.number(Stepped::kHeldFieldNumber, from.held);
   to.number(Stepped::kBulgeFieldNumber, from.bulge);
   const std::size_t before_record = to.size();
@@ -144,7 +145,7 @@ void decode(Bytes bytes, const Description& body, const PassiveStep& asked, Pass
   const FieldPath path{nullptr, "passive_stepped"};
   const FieldPath all_ports{&path, "ports"}, record{&path, "record"};
   to.ports.resize(body.ports.size());
-  to.bulge = to.held = 0.0;
+  to.bulge = to.held = to.compute_seconds = 0.0;
   std::size_t ports = 0;
   bool recorded = false, compliant = false;
   for (WireReader from(bytes, path); from.next();) {
@@ -169,6 +170,10 @@ void decode(Bytes bytes, const Description& body, const PassiveStep& asked, Pass
         break;
       case Stepped::kHeldFieldNumber:
         to.held = number(from.number(), FieldPath{&path, "held"}, Allow::not_negative);
+        break;
+      case Stepped::kComputeSecondsFieldNumber:
+        to.compute_seconds =
+            number(from.number(), FieldPath{&path, "compute_seconds"}, Allow::not_negative);
         break;
       default:
         from.skip();

@@ -47,6 +47,7 @@ struct Talk {
           {{dice.value(), dice.value(), dice.value(), dice.value()}, dice.values(index(body.dim))});
     reply.bulge = dice.coin() ? 0.0 : 0.5 + dice.value();
     reply.held = dice.coin() ? 0.0 : 0.5 + dice.value();
+    reply.compute_seconds = dice.coin() ? 0.0 : 0.5 + dice.value();
   }
 
   Dice dice;
@@ -80,6 +81,7 @@ void expect_equal(const PassiveReply& got, const PassiveReply& sent) {
   EXPECT_EQ(got.compliance, sent.compliance);
   EXPECT_EQ(bytes_of<v1::PassiveStepped>(got), bytes_of<v1::PassiveStepped>(sent));  // the record
   EXPECT_EQ(got.bulge, sent.bulge);
+  EXPECT_EQ(got.compute_seconds, sent.compute_seconds);
 }
 
 TEST(PassiveShapes, StepsAndRepliesComeBackAsTheyWereSent) {
