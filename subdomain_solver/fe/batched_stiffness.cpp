@@ -3,6 +3,7 @@
 #include "subdomain_solver/fe/batched_stiffness.hpp"
 
 #include "subdomain_solver/fe/batched_responses.hpp"
+#include "subdomain_solver/fe/batched_slowness.hpp"
 #include "subdomain_solver/materials/batched_tangents.hpp"
 
 namespace abut {
@@ -288,9 +289,18 @@ constexpr StiffnessKernels::OfLaw kernels_of() {
   return {run<2, false, Law>, run<3, false, Law>, run<2, true, Law>, run<3, true, Law>};
 }
 
+#ifdef __FP_FAST_FMA
+constexpr bool fuses = true;
+#else
+constexpr bool fuses = false;
+#endif
+
 }  // namespace
 
-const StiffnessKernels ABUT_STIFFNESS = {ABUT_INSTRUCTIONS, kernels_of<SaintVenantKirchhoffLaw>(),
-                                         kernels_of<NeoHookeanLaw>()};
+const StiffnessKernels ABUT_STIFFNESS = {
+    ABUT_INSTRUCTIONS,           kernels_of<SaintVenantKirchhoffLaw>(),
+    kernels_of<NeoHookeanLaw>(), measure_all<2, lanes>,
+    measure_all<3, lanes>,       find_slower<2, lanes>,
+    find_slower<3, lanes>,       fuses};
 
 }  // namespace abut

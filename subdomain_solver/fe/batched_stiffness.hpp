@@ -17,6 +17,28 @@ struct StiffnessBatch {
 /// False: a point has no answer.
 using StiffnessKernel = bool (*)(const StiffnessBatch&, const BatchedParameters&);
 
+/// Reference shapes of 8 cells of one element.
+struct ShapeBatch {
+  int nodes = 0, points = 0;
+  const double* weight = nullptr;  // (points) of a rule
+  const double* slope = nullptr;   // (points, nodes, dim) dN/dxi
+  const double* place = nullptr;   // [m] (nodes, dim, 8)
+  double* volume = nullptr;        // [m^dim] (points, 8)
+  double* gradient = nullptr;      // [1/m] (points, nodes, dim, 8); null: not wanted
+};
+using ShapeKernel = void (*)(const ShapeBatch&);
+
+/// 8 cells that are held against a frequency.
+struct SlownessBatch {
+  int nodes = 0;
+  double square = 0.0;                // [1/s^2]
+  const double* stiffness = nullptr;  // [N/m] as StiffnessBatch has it
+  const double* mass = nullptr;       // [kg] (nodes, 8)
+  double* rows = nullptr;             // work space (n (n + 1)/2, 8), n = nodes x dim
+};
+/// A bit of each cell: whether square M - K is definite, so that its frequencies are lower.
+using SlownessKernel = unsigned (*)(const SlownessBatch&);
+
 /// Of one instruction set. What CellKernel computes cell by cell [M.43, M.45], to rounding; the
 /// same bits for every width of registers.
 struct StiffnessKernels {
@@ -26,6 +48,9 @@ struct StiffnessKernels {
     StiffnessKernel flat_one_volume, space_one_volume;  // mean dilatation, one volume per cell
   };
   OfLaw saint_venant_kirchhoff, neo_hookean;
+  ShapeKernel flat_shape, space_shape;
+  SlownessKernel flat_slowness, space_slowness;
+  bool fuses;  // fused multiply-add is an instruction, not a call
 
   /// Null: there is none.
   StiffnessKernel of(BatchedLaw law, int dim, bool one_volume) const {

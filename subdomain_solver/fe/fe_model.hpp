@@ -84,6 +84,7 @@ class FeModel final : public Model {
   CellMeasures cell_measures(int block, int cell) const;
   /// The rule at which a block's cells are integrated.
   const Tabulation& rule(int block) const { return blocks_[block].table; }
+  const Tabulation& mass_rule(int block) const { return blocks_[block].mass_table; }
   BatchedCells* batched() { return batched_.get(); }  // null: forces are found cell by cell
 
   /// State of one quadrature point.

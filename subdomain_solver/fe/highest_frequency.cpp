@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "base/dense.hpp"
@@ -51,7 +52,8 @@ double rest_in_metric(const Moduli& moduli, const Eigen::MatrixXd& s) {
 
 }  // namespace
 
-HighestFrequency::HighestFrequency(FeModel& model) : model_(model), cells_(model.batched()) {
+HighestFrequency::HighestFrequency(FeModel& model)
+    : model_(model), cells_(model.batched()), slower_(model) {
   if (cells_ != nullptr && !cells_->bounds()) cells_ = nullptr;
   if (cells_ != nullptr)
     find_scales();
@@ -160,19 +162,32 @@ std::optional<FrequencyWatch::Bound> HighestFrequency::cell_bound(std::span<cons
                                                                   std::span<const double> history,
                                                                   double from) {
   const Mesh& mesh = model_.mesh();
+  const std::span<const double> u = in_space(q);
   Bound best{from, -1, -1};
-  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    const int nodes = mesh.blocks[b].element->nodes, block = static_cast<int>(b);
-    for (int c = 0; c < mesh.blocks[b].count(); ++c) {
-      if (!model_.cell_tangent(block, c, q, history, stiffness_)) return std::nullopt;
-      const double* mass = masses_.data() + first_mass_[b] + index(c) * index(nodes);
-      shifted_ = -stiffness_;
-      for (int i = 0; i < shifted_.rows(); ++i) shifted_(i, i) += best.square * mass[i / mesh.dim];
-      if (factor_definite(shifted_)) continue;
-      if (!compute(block, c, q, history, best)) return std::nullopt;
+  std::vector<int> eight;
+  for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
+    const int count = mesh.blocks[index(b)].count();
+    for (int first = 0; first < count; first += batch_lanes) {
+      eight.resize(index(std::min(batch_lanes, count - first)));
+      std::iota(eight.begin(), eight.end(), first);
+      const unsigned slower = slower_.can(b) ? slower_.find(b, eight, u, history, best.square) : 0u;
+      for (std::size_t k = 0; k < eight.size(); ++k)
+        if ((slower >> k & 1u) == 0 && !raise(b, eight[k], q, history, best)) return std::nullopt;
     }
   }
   return best;
+}
+
+/// By one cell, where Cholesky factors do not tell it slower. False: it has no answer.
+bool HighestFrequency::raise(int block, int cell, std::span<const double> q,
+                             std::span<const double> history, Bound& best) {
+  const Mesh& mesh = model_.mesh();
+  const int nodes = mesh.blocks[index(block)].element->nodes;
+  if (!model_.cell_tangent(block, cell, q, history, stiffness_)) return false;
+  const double* mass = masses_.data() + first_mass_[index(block)] + index(cell) * index(nodes);
+  shifted_ = -stiffness_;
+  for (int i = 0; i < shifted_.rows(); ++i) shifted_(i, i) += best.square * mass[i / mesh.dim];
+  return factor_definite(shifted_) || compute(block, cell, q, history, best);
 }
 
 std::string HighestFrequency::place(const Bound& bound) const {

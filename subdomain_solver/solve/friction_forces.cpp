@@ -25,7 +25,7 @@ constexpr double friction_softness = 1.0e-11;
 constexpr double on_cone = 1.0e-9;
 /// Cubes of unknowns that a call factors: some seconds. What takes more is hardly ever found, and
 /// whoever asks has other ways.
-constexpr double most_factored = 2.0e10;
+constexpr double most_cubes = 2.0e10;
 
 using Tangent = OneRow<>::Tangent;
 using PlaneSquare = OneRow<>::PlaneSquare;
@@ -90,7 +90,7 @@ class Linearised {
     }
     const auto size = static_cast<double>(n);
     b_.factored += size * size * size;
-    if (b_.factored > most_factored) return false;
+    if (b_.factored > most_cubes) return false;
     b_.matrix.resize(n, n);
     b_.rest.resize(n);
     Eigen::Index at = 0;
