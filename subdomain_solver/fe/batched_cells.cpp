@@ -8,6 +8,7 @@
 #include "base/index.hpp"
 #include "base/vector_units.hpp"
 #include "subdomain_solver/fe/batched_law.hpp"
+#include "subdomain_solver/fe/cell_measures.hpp"
 #include "subdomain_solver/materials/j2_plasticity.hpp"
 #include "subdomain_solver/materials/mooney_rivlin.hpp"
 
@@ -25,21 +26,10 @@ std::optional<BatchedCell> cell_of(const Element& element, Formulation formulati
   if (element.name == "quad4") return choose(quad4, quad4_mean_dilatation, quad4_one_point);
   if (element.name == "tet4") return tet4;
   if (element.name == "tri3") return tri3;
+  if (formulation != Formulation::full) return std::nullopt;
+  if (element.name == "tet10") return tet10;
+  if (element.name == "hex20") return hex20;
   return std::nullopt;
-}
-
-/// Points at which a cell has its law.
-int points_of(BatchedCell cell) {
-  switch (cell) {
-    case BatchedCell::hex8:
-    case BatchedCell::hex8_mean_dilatation:
-      return 8;
-    case BatchedCell::quad4:
-    case BatchedCell::quad4_mean_dilatation:
-      return 4;
-    default:
-      return 1;
-  }
 }
 
 HardeningNumbers hardening_of(const Material& material) {
@@ -104,11 +94,20 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
     : dim_(mesh.dim),
       patches_(mesh),
       table_(options.kernels != nullptr ? *options.kernels : *batched_kernels().front()),
-      parameters_{material.moduli(), options.hourglass * material.moduli().p_wave(),
-                  options.thickness, hardening_of(material), invariants_of(material)},
       threads_(options.threads) {
   ABUT_ASSERT(can(mesh, material, options.formulation));
+  const BatchedParameters of_law{material.moduli(), options.hourglass * material.moduli().p_wave(),
+                                 options.thickness, hardening_of(material),
+                                 invariants_of(material)};
+  rules_.reserve(mesh.blocks.size());
   for (const CellBlock& block : mesh.blocks) {
+    const Element& element = *block.element;
+    const Tabulation& rule = rules_.emplace_back(
+        tabulate(element, quadrature(element.shape, stiffness_degree(element))));
+    BatchedParameters& own = parameters_.emplace_back(of_law);
+    own.points = rule.points;
+    own.weight = rule.weight.data();
+    own.slope = rule.dn.data();
     const BatchedCell cell = *cell_of(*block.element, options.formulation);
     kernels_.push_back(table_.of(cell, *batched_law_of(material)));
     frequencies_.push_back(table_.frequency_of(cell, *batched_law_of(material)));
@@ -122,9 +121,9 @@ BatchedCells::BatchedCells(const Mesh& mesh, const Material& material,
   energies_.resize(patches_.list().size());
   answers_.resize(patches_.list().size());
   if (material.history_size() > 0) {
-    for (const CellBlock& block : mesh.blocks)
+    for (std::size_t b = 0; b < rules_.size(); ++b)
       cell_numbers_.push_back(material.history_size() *
-                              points_of(*cell_of(*block.element, options.formulation)));
+                              law_points(*mesh.blocks[b].element, rules_[b], options.formulation));
     place_histories(mesh, options.first_history);
   }
 }
@@ -175,7 +174,7 @@ void BatchedCells::evaluate(std::size_t p, Copies& copies, std::span<const doubl
   copy_displacement(patch, copies, q);
   std::fill_n(copies.force.begin(), patch.reference.size(), 0.0);
   PatchView view = view_of(p, copies, histories);
-  answers_[p] = kernels_[patch.block](view, parameters_);
+  answers_[p] = kernels_[patch.block](view, parameters_[index(patch.block)]);
   energies_[p] = {};
   for (const double energy : view.stored) energies_[p].stored += energy;
   for (const double energy : view.dissipated) energies_[p].dissipated += energy;
@@ -237,7 +236,7 @@ void BatchedCells::ask_all(std::span<const double> q, std::span<const double> hi
     Copies& copies = copies_[worker];
     copy_displacement(patch, copies, q);
     const PatchView view = view_of(p, copies, {history.data(), nullptr});
-    frequencies_[patch.block](view, parameters_, questions_[p]);
+    frequencies_[patch.block](view, parameters_[index(patch.block)], questions_[p]);
   };
   threads_.run(list.size(), std::ref(ask));
 }

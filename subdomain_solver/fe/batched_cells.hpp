@@ -41,8 +41,8 @@ std::vector<const KernelTable*> batched_kernels();
 /// from memory. The same bits for every number of threads and every width of registers.
 class BatchedCells {
  public:
-  /// Whether all cells (hex8, quad4, tet4, tri3) and the law have a batched form; cells that share
-  /// their place with another body's have none.
+  /// Whether all cells (hex8, quad4, tet4, tri3, full tet10 and hex20) and the law have a batched
+  /// form; cells that share their place with another body's have none.
   static bool can(const Mesh& mesh, const Material& material, Formulation formulation);
 
   BatchedCells(const Mesh& mesh, const Material& material, const BatchedOptions& options);
@@ -90,7 +90,8 @@ class BatchedCells {
   int dim_;
   CellPatches patches_;
   const KernelTable& table_;
-  BatchedParameters parameters_;
+  std::vector<Tabulation> rules_;                         // (blocks)
+  std::vector<BatchedParameters> parameters_;             // (blocks)
   std::vector<PatchKernel> kernels_;                      // (blocks)
   std::vector<FrequencyKernel> frequencies_;              // (blocks)
   std::vector<Copies> copies_;                            // (threads)

@@ -35,6 +35,10 @@ struct BatchedParameters {
   double thickness = 1.0;  // [m] of plane cells
   HardeningNumbers hardening;
   MooneyRivlinNumbers mooney_rivlin;
+  // The rule of cells that are computed by one: weights (points), dN/dxi (points, nodes, dim).
+  int points = 0;
+  const double* weight = nullptr;
+  const double* slope = nullptr;
 };
 
 /// Internal force and stored energy of a patch. False: a point has no answer.
@@ -71,11 +75,13 @@ enum class BatchedCell {
   quad4_mean_dilatation,
   tet4,
   tri3,
+  tet10,
+  hex20,
   count
 };
 
 /// Kernels of every cell (rows) with every law (columns), for one instruction set; null: there is
-/// none. Frequencies of cells with mean dilatation have no bound [M.58].
+/// none. Frequencies of cells with mean dilatation or of second order have no bound [M.58].
 struct KernelTable {
   const char* instructions = "";
   std::array<std::array<PatchKernel, static_cast<int>(BatchedLaw::count)>,

@@ -8,6 +8,7 @@
 #include "subdomain_solver/fe/batched_mean_dilatation.hpp"
 #include "subdomain_solver/fe/batched_points.hpp"
 #include "subdomain_solver/fe/batched_simplices.hpp"
+#include "subdomain_solver/fe/batched_tabulated.hpp"
 
 namespace abut {
 
@@ -256,6 +257,17 @@ constexpr std::array<PatchKernel, laws> row() {
           call_patch<Cell, J2Points<ABUT_LANES>>};
 }
 
+/// Of cells with many points and nodes, which would take long to compile with every law.
+template <class Cell>
+constexpr std::array<PatchKernel, laws> called_row() {
+  return {call_patch<Cell, Plain<LinearElasticResponse>>,
+          call_patch<Cell, Plain<SaintVenantKirchhoffResponse>>,
+          call_patch<Cell, Plain<NeoHookeanResponse>>,
+          call_patch<Cell, Plain<MooneyRivlinResponse>>,
+          call_patch<Cell, Plain<HenckyResponse>>,
+          call_patch<Cell, J2Points<ABUT_LANES>>};
+}
+
 /// Of cells whose volume change is of finite strain: linear laws have another one.
 template <class Cell>
 constexpr std::array<PatchKernel, laws> finite_row() {
@@ -267,7 +279,8 @@ constexpr std::array<PatchKernel, laws> finite_row() {
 constexpr KernelTable table = {
     ABUT_INSTRUCTIONS,
     {row<Hex8>(), row<Hex8OnePoint>(), finite_row<Hex8MeanDilatation>(), row<Quad4>(),
-     row<Quad4OnePoint>(), finite_row<Quad4MeanDilatation>(), row<Tet4>(), row<Tri3>()},
+     row<Quad4OnePoint>(), finite_row<Quad4MeanDilatation>(), row<Tet4>(), row<Tri3>(),
+     called_row<TabulatedCell<10>>(), called_row<TabulatedCell<20>>()},
     {frequency_row<Hex8Points>(),
      frequency_row<Hex8MeanPoint>(),
      {},
@@ -275,7 +288,9 @@ constexpr KernelTable table = {
      frequency_row<Quad4MeanPoint>(),
      {},
      frequency_row<Tet4Point>(),
-     frequency_row<Tri3Point>()}};
+     frequency_row<Tri3Point>(),
+     {},
+     {}}};
 
 }  // namespace
 

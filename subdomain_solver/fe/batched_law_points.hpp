@@ -39,9 +39,9 @@ struct HistoryRows {
   const double* from[N] = {};
   double* to[N] = {};
 
-  /// Lanes without a cell have points that nothing has happened to.
+  /// Lanes without a cell have points that nothing has happened to, at most 27 of hex20.
   [[gnu::always_inline]] void begin(int batch, int slice) {
-    static constexpr double nothing[8 * J2HistoryLanes<N>::size] = {};
+    static constexpr double nothing[27 * J2HistoryLanes<N>::size] = {};
     for (int l = 0; l < N; ++l) {
       const std::int64_t first = patch.first_history[batch * batch_lanes + slice + l];
       from[l] = first < 0 ? nothing : patch.before + first;

@@ -69,7 +69,7 @@ FeModel::FeModel(Mesh mesh, std::unique_ptr<const Material> material, const FeOp
   if (options.batched && plain && BatchedCells::can(mesh_, *material_, options.formulation)) {
     batched_ = std::make_unique<BatchedCells>(mesh_, *material_, batched_options());
     // Frequencies are then found cell by cell, step after step, by measures that are kept.
-    if (!batched_->bounds()) assembly();
+    if (!batched_->bounds() && !is_linear()) assembly();
   }
   answers_ =
       std::make_unique<CellAnswers>(*material_, options, mesh_.dim,

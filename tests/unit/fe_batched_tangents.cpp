@@ -17,7 +17,8 @@ namespace {
 
 /// Batches that are not full, and more cells than are asked at a time.
 FeModel model_of(const BatchCase& c, bool batched, int threads = 1) {
-  Mesh mesh = unit_mesh(c.element, c.element.starts_with("hex") || c.element == "tet4" ? 3 : 7);
+  const Element& element = element_named(c.element);
+  Mesh mesh = unit_mesh(c.element, element.order > 1 ? 2 : element.dim == 3 ? 3 : 7);
   distort(mesh, 0.02);
   FeOptions options{Plane::strain, c.formulation, 0.7};
   options.batched = batched;
@@ -38,6 +39,8 @@ std::vector<BatchCase> cases() {
     for (const Formulation formulation : {Formulation::full, Formulation::mean_dilatation})
       for (const std::string law : {"saint_venant_kirchhoff", "neo_hookean"})
         out.push_back({element, formulation, law});
+  for (const std::string element : {"tet10", "hex20"})
+    out.push_back({element, Formulation::full, "neo_hookean"});
   return out;
 }
 
