@@ -1,6 +1,7 @@
 #include "subdomain_solver/fe/highest_frequency.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <unordered_map>
@@ -164,15 +165,16 @@ std::optional<FrequencyWatch::Bound> HighestFrequency::cell_bound(std::span<cons
   const Mesh& mesh = model_.mesh();
   const std::span<const double> u = in_space(q);
   Bound best{from, -1, -1};
-  std::vector<int> eight;
+  std::array<int, batch_lanes> eight{};
   for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
     const int count = mesh.blocks[index(b)].count();
     for (int first = 0; first < count; first += batch_lanes) {
-      eight.resize(index(std::min(batch_lanes, count - first)));
       std::iota(eight.begin(), eight.end(), first);
-      const unsigned slower = slower_.can(b) ? slower_.find(b, eight, u, history, best.square) : 0u;
-      for (std::size_t k = 0; k < eight.size(); ++k)
-        if ((slower >> k & 1u) == 0 && !raise(b, eight[k], q, history, best)) return std::nullopt;
+      const std::span<const int> cells =
+          std::span<const int>(eight).first(index(std::min(batch_lanes, count - first)));
+      const unsigned slower = slower_.can(b) ? slower_.find(b, cells, u, history, best.square) : 0u;
+      for (std::size_t k = 0; k < cells.size(); ++k)
+        if ((slower >> k & 1u) == 0 && !raise(b, cells[k], q, history, best)) return std::nullopt;
     }
   }
   return best;
