@@ -17,6 +17,7 @@
 #include "subdomain_solver/fe/fe_model.hpp"
 #include "subdomain_solver/fe/mesh_generators.hpp"
 #include "subdomain_solver/materials/linear_elastic.hpp"
+#include "subdomain_solver/solve/branches.hpp"
 #include "subdomain_solver/solve/front_elimination.hpp"
 #include "subdomain_solver/solve/front_substitution.hpp"
 #include "subdomain_solver/solve/multifrontal_solver.hpp"
@@ -226,20 +227,62 @@ TEST(Fronts, HaveTheSameBitsForEveryWidthOfRegisters) {
   expect_same(generic, here);
 }
 
-/// Of a solid whose separators are fronts of some hundred columns, which threads share.
+/// Of a solid whose separators are fronts of some hundred columns, which threads share, above
+/// branches of which each has its own.
 TEST(Fronts, HaveTheSameBitsForEveryNumberOfThreads) {
-  SparseMatrix k = free_stiffness("hex8", {13, 13, 13});
+  SparseMatrix k = free_stiffness("hex8", {15, 15, 15});
   k.diagonal().array() += 0.01;
+  const Fronts fronts = find_fronts(k);
+  ASSERT_GT(find_branches(fronts).list.size(), 6U);
   const Vector b = Vector::LinSpaced(k.rows(), -1.0, 2.0);
+  Eigen::MatrixXd sides(k.rows(), 11), alone_of_sides, shared_of_sides;
+  for (int c = 0; c < 11; ++c) sides.col(c) = b.array().pow(c);
   Vector alone, shared;
   const auto solver = make_multifrontal_solver(Pivots::definite);
   ASSERT_TRUE(solver->factor(k) && solver->solve(b, alone));
+  ASSERT_TRUE(solver->solve_columns(sides, alone_of_sides));
   for (const int count : {2, 3}) {
     WorkerThreads threads(count);
     const auto other = make_multifrontal_solver(Pivots::definite, &threads);
     ASSERT_TRUE(other->factor(k) && other->solve(b, shared));
     EXPECT_EQ(alone, shared) << count;
+    ASSERT_TRUE(other->factor(k) && other->solve_columns(sides, shared_of_sides));
+    EXPECT_EQ(alone_of_sides, shared_of_sides) << count;
+    EXPECT_EQ(shared_of_sides.col(1), shared) << count;
   }
+  // Of forces of order 1, answers up to 100 by the softest mode of 0.01.
+  EXPECT_LT((k * alone - b).lpNorm<Eigen::Infinity>(), roundoff(1.0e4, 1.0));
+}
+
+/// Every front is in one branch or above them all, and what a branch leaves is above.
+TEST(Branches, DivideTheFronts) {
+  const Fronts fronts = find_fronts(free_stiffness("hex8", {15, 15, 15}));
+  const Branches branches = find_branches(fronts);
+  std::vector<int> seen(fronts.list.size(), 0);
+  for (const Front* front : branches.others) ++seen[index(front - fronts.list.data())];
+  int columns = 0;
+  for (const Branch& branch : branches.list) {
+    std::size_t values = 0;
+    for (std::size_t f = branch.first; f < branch.end; ++f) {
+      const Front& front = fronts.list[f];
+      ++seen[f];
+      columns += front.columns;
+      values += index(front.rows) * index(front.columns);
+      for (int k = 0; k < front.rows; ++k) {
+        const int at = branches.rows[front.list + index(k)],
+                  row = fronts.rows[front.list + index(k)];
+        ASSERT_LT(at, branch.size());
+        const Front& root = fronts.list[branch.end - 1];
+        const int left = at - branch.columns + root.columns;
+        EXPECT_EQ(row, at < branch.columns ? branch.first_column + at
+                                           : fronts.rows[root.list + index(left)]);
+      }
+    }
+    EXPECT_LE(values, fronts.values / 8);
+  }
+  for (const Front* front : branches.others) columns += front->columns;
+  EXPECT_EQ(columns, static_cast<int>(fronts.order.size()));
+  EXPECT_TRUE(std::ranges::all_of(seen, [](int times) { return times == 1; }));
 }
 
 /// Widths differ in how many rows they pack, and all must be content with the same room.
