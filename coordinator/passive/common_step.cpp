@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -22,6 +23,10 @@ constexpr double fits = 0.05;
 constexpr double fits_at_rest = 1.0e-3;
 /// [1/(thickness/step)] of velocities of rows: less is no change.
 constexpr double negligible = 1.0e-3;
+/// Of the largest energy: less work of impulses in a step, that velocities close, is none; it
+/// may add up to a thousandth in a thousand steps. Of joined bodies rows are no finer than joints,
+/// which hold to a share of the thickness.
+constexpr double no_work = 1.0e-6;
 /// Of both, where rows fit and pairs that they hold come too near all the same: those were nearer
 /// than what fits.
 constexpr double finer = 0.1;
@@ -394,8 +399,9 @@ double CommonStep::most_work() const {
 void CommonStep::solve_rows(std::size_t answered) {
   const int doubled = std::clamp(softer_ - softer_from, 0, softest);
   for (int b = 0; b < bodies_.count(); ++b) take_answer(b, std::ldexp(1.0, doubled));
-  const double still =
-      fine_ * (statics_ ? fits_at_rest : 1.0) * negligible * near_.thickness() / length();
+  const RowImpulses::Negligible still = {
+      fine_ * (statics_ ? fits_at_rest : 1.0) * negligible * near_.thickness() / length(),
+      ties_.any() ? std::numeric_limits<double>::infinity() : no_work * most_};
   const double rounding = 1.0e-3 * rounding_of_work * most_;
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
   solver.press_from(answered);

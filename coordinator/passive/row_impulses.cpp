@@ -11,6 +11,9 @@ namespace {
 constexpr double regularised = 1.0e-6;
 /// Sweeps over all rows. More do not change overlaps or losses: the next step's gaps do.
 constexpr int most_sweeps = 100;
+/// Of the velocity that the largest impulse makes: less is no change. Stiff bodies at rest give way
+/// by less than a thousandth of the thickness, and their weight makes no more speed in a step.
+constexpr double of_pressed = 1.0e-4;
 /// Rows that are aimed at a velocity have it to this share of that with which their sides came,
 /// however short the step; corners that share one plane take many sweeps.
 constexpr double of_approach = 1.0e-6;
@@ -142,7 +145,7 @@ double RowImpulses::recoil(std::size_t k) const {
   return w > 0.0 ? 2.0 * row.owed / (w + root) : (root - w) / (2.0 * own);
 }
 
-double RowImpulses::release(double negligible) {
+double RowImpulses::release(const Negligible& negligible) {
   double released = 0.0;
   for (double sum = let_go(); sum > released; sum = let_go()) {
     released = sum;
@@ -203,18 +206,24 @@ double RowImpulses::solve_friction(std::size_t k) {
   return largest;
 }
 
-void RowImpulses::solve(double negligible) {
+void RowImpulses::solve(const Negligible& negligible) {
   int sweeps = most_sweeps;
+  double least = negligible.velocity;
   for (const DistanceRow& row : rows_) {
     if (!row.aimed) continue;
-    negligible = std::min(negligible, of_approach * row.approach);
+    least = std::min(least, of_approach * row.approach);
     sweeps = most_aimed_sweeps;
   }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    double change = 0.0;
-    for (std::size_t k = 0; k < rows_.size(); ++k)
+    double change = 0.0, pressed = 0.0, impulses = 0.0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
       change = std::max({change, solve_normal(k), solve_friction(k)});
-    if (change < negligible) return;
+      const double impulse = std::abs(rows_[k].normal_impulse);
+      pressed = std::max(pressed, answers_[k].normal * impulse);
+      impulses += impulse;
+    }
+    const bool works = change * impulses > negligible.work && change > of_pressed * pressed;
+    if (change < least && !works) return;
   }
 }
 

@@ -21,8 +21,11 @@ class RowImpulses {
   /// Adds to the velocities so much of what the impulses of rows do, from one of them on: those
   /// that are not in the velocities yet.
   void press_from(std::size_t row, double share = 1.0);
-  /// `negligible` [m/s]: less change of a velocity is none.
-  void solve(double negligible);
+  /// Less change of a velocity [m/s] is none, unless impulses do more than that work [J] by it.
+  struct Negligible {
+    double velocity = 0.0, work = 0.0;
+  };
+  void solve(const Negligible& negligible);
   /// [m/s] w of a row along its normal.
   double velocity(const DistanceRow& row) const { return velocity(row, 0); }
   /// [J] sum of J.w
@@ -33,7 +36,7 @@ class RowImpulses {
   double returned() const;
   /// Rows that are owed something, press no more and part, give it back from now on, and those that
   /// part by this, too; solved again. `negligible`: as above. Its sum [J].
-  double release(double negligible);
+  double release(const Negligible& negligible);
   /// Makes the work at most so much [J]; the factor that it took.
   double limit(double most);
 
