@@ -13,6 +13,10 @@
 namespace abut {
 namespace {
 
+/// Of the largest energy: what contact may give or take while nothing moves. Sweeps that ended at a
+/// share of the thickness gave 0.1, and their friction 0.19; measured 3e-3 and 0.015.
+constexpr double of_rest = 0.02;
+
 constexpr int voussoirs = 9;
 constexpr double inner = 1.8, depth = 0.4, density = 2450.0, weight_of_mass = 9.81;  // SI
 
@@ -55,9 +59,8 @@ TEST(PassiveRests, AnArchOfStiffBlocksStaysWhereItIs) {
   ASSERT_TRUE(run->completed()) << run->end.reason;
   const GivenUp& up = run->end.given_up;
   ASSERT_GT(up.windows, 100);
-  // Sweeps that ended at a share of the thickness gave 0.19 and 0.1.
-  EXPECT_LT(up.friction, 0.05 * up.largest);
-  EXPECT_LT(std::abs(up.joules()), 0.01 * up.largest);
+  EXPECT_LT(up.friction, of_rest * up.largest);
+  EXPECT_LT(std::abs(up.joules()), of_rest * up.largest);
 }
 
 }  // namespace
