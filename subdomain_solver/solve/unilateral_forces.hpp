@@ -24,4 +24,9 @@ struct UnilateralBuffers {
 [[nodiscard]] bool unilateral_forces(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,
                                      UnilateralBuffers& buffers);
 
+/// Rows of A [m/N] that no force moves, as of held points before a tool, give way each for itself
+/// as much as the softest one: by what rounding is they have no force that counts. What really
+/// drives held points into tools is seen by those who look at the way.
+void soften_standing(Eigen::MatrixXd& a);
+
 }  // namespace abut
