@@ -48,8 +48,7 @@ struct Pause {
 /// a window is that of Schwarz; what is told of all this, the Narrator's.
 class Controller {
  public:
-  /// The bodies must outlive the controller. `interrupted`: the run is to end between two windows;
-  /// may be null.
+  /// The bodies must outlive it. `interrupted`: the run is to end between windows; may be null.
   Controller(const Scene& scene, std::vector<Subdomain*> bodies, std::vector<Observer*> observers,
              const std::atomic<bool>* interrupted = nullptr);
 
@@ -149,6 +148,7 @@ class Controller {
   bool go_passively(double time, const std::string& reason);
   void step_passively();
   bool repay();
+  void take_back_growth();
   void accept_passively(const TimeWindow& window);
   void go_accurately();
   GivenUp given_up() const;
@@ -192,7 +192,7 @@ class Controller {
   std::vector<InterfaceReport> reports_;
   std::vector<PairReport> pairs_;
   RunEnd end_;
-  bool resumed_ = false, staged_ = false, settles_ = false;  // settles: springs stabilise a body
+  bool resumed_ = false, staged_ = false, settles_ = false;  // it settles: springs hold a body
   std::vector<std::optional<HandOver>> handed_;  // by body; empty: none is another one now
   std::optional<StageEvent> event_;  // none: time.end alone ends the stage
 };

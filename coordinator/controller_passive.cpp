@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -186,6 +187,19 @@ bool Controller::repay() {
   return true;
 }
 
+/// Passive windows make no energy, and do not end a run for what accurate ones before have made
+/// that could not be judged, when bodies that rested had none yet: they take it back.
+void Controller::take_back_growth() {
+  const double grown = guard_.overgrown(bodies_.responses());
+  if (!(grown > 0.0)) return;
+  std::vector<int> moving;
+  for (int b = 0; b < bodies_.count(); ++b)
+    if (std::isfinite(bodies_.describe(b).mass)) moving.push_back(b);
+  const std::vector<double> gave = passive_.repay(moving, grown);
+  for (std::size_t k = 0; k < moving.size(); ++k) guard_.repaid(moving[k], gave[k]);
+  passive_.count_repaid(std::accumulate(gave.begin(), gave.end(), 0.0));
+}
+
 void Controller::accept_passively(const TimeWindow& window) {
   attempt_.reports.clear();
   for (Joint& joint : joints_) {
@@ -198,6 +212,7 @@ void Controller::accept_passively(const TimeWindow& window) {
     if (joint.closed() && index(joint.interface) >= scene_.interfaces.size())
       pairs_.push_back(pair_report(joint));
   events_.settle_passively(window, guard_.most());
+  if (!passive_.on_a_line() && !passive_.statics()) take_back_growth();
   end_window(window, guard_.look(bodies_.responses()));
 }
 

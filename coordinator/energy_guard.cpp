@@ -198,6 +198,13 @@ double EnergyGuard::excess(std::span<const Response> responses, std::span<const 
   return std::max(0.0, own - first_ - stands * share_ * most_touching_);
 }
 
+double EnergyGuard::overgrown(std::span<const Response> responses) const {
+  if (!begun_ || !together_) return 0.0;
+  double motion = 0.0;
+  const double own = own_energy(responses, 0, motion);
+  return std::max(0.0, own - first_ - bound() * std::max(most_, motion));
+}
+
 double EnergyGuard::forgiven() const { return spare * share_ * most_touching_; }
 
 void EnergyGuard::repaid(int body, double joules) {

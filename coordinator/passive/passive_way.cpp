@@ -281,6 +281,7 @@ std::vector<double> PassiveWay::repay(std::span<const int> bodies, double joules
       const double given = bodies_.ask_passively(bodies[k]).damp(shares[k]);
       gives[k] = given >= most_of_share * shares[k];
       energy_of(bodies[k]).kinetic -= given;
+      if (active_) step_->lower(bodies[k], given);
       gave[k] += given;
       left -= given;
     }
