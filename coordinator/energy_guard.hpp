@@ -57,8 +57,8 @@ class EnergyGuard {
   /// `payments` [J]: what contact of bars would pay them beside.
   double excess(std::span<const Response> responses, std::span<const double> struck = {},
                 double payments = 0.0);
-  /// [J] by which all energies have grown beyond a two-hundredth of the largest (a tenth of the share,
-  /// where that is more), early looks included: what windows have made that were let pass.
+  /// [J] by which all energies have grown beyond a two-hundredth of the largest (a tenth of the
+  /// share, where that is more), early looks included: what windows have made that were let pass.
   double overgrown(std::span<const Response> responses) const;
   /// [J] of that excess which may stay where bodies have nothing to repay it with.
   double forgiven() const;
