@@ -9,7 +9,6 @@
 #include "base/index.hpp"
 #include "base/one_each.hpp"
 #include "contract/kernel_misfit.hpp"
-#include "subdomain_solver/solve/unilateral_forces.hpp"
 #include "surface/tangents.hpp"
 
 namespace abut {
@@ -385,7 +384,6 @@ bool SurfaceContact::find_compliance(Compliance& give) {
         compliance_(s, r) += terms_[t].factor * along_(number_[index(terms_[t].coordinate)]);
   }
   if (rubs_) soften_held(rows_, compliance_);
-  soften_standing(compliance_);
   complies_ = true;
   version_ = give.version();
   return true;

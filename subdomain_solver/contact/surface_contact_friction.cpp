@@ -194,6 +194,10 @@ void SurfaceContact::guess_forces() {
 }
 
 bool SurfaceContact::find_forces() {
+  constexpr double rounding = 1.0e-6;  // of an edge: of places, in whatever units
+  if (gaps_.allFinite() && !meetings_.empty())
+    forget_roundings(compliance_, rounding * surfaces_[meetings_[0].own].surface.geometry->spacing,
+                     gaps_);
   if (!rubs_) return unilateral_forces(compliance_, gaps_, row_force_, buffers_);
   if (row_force_.size() != gaps_.size()) guess_forces();
   return friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_);
@@ -201,6 +205,7 @@ bool SurfaceContact::find_forces() {
 
 /// Where the forces that were found last are farthest from what contact asks for, and how far.
 void SurfaceContact::tell_missing() {
+  constexpr double no_number = 1.0e3;  // of the largest: forces that grew without end miss by any
   if (!gaps_.allFinite() || !compliance_.allFinite()) {
     missing_ =
         "it strains so far in a step that its surface is nowhere any more; take a smaller step";
@@ -218,9 +223,10 @@ void SurfaceContact::tell_missing() {
       const std::size_t dim = index(rows.dim), at = index(rows.nodes[r]) * dim;
       missing_ = fmt::format(
           "no contact forces were found that fit all of {} rows against {} partners: at ({:.4g}) "
-          "they miss by {:.2g} of the largest; take a smaller step, or materials that are less "
-          "stiff",
-          rows_.size(), meetings_.size(), fmt::join(std::span(pose).subspan(at, dim), ", "), miss);
+          "they {}; take a smaller step, or materials that are less stiff",
+          rows_.size(), meetings_.size(), fmt::join(std::span(pose).subspan(at, dim), ", "),
+          miss < no_number ? fmt::format("miss by {:.2g} of the largest", miss)
+                           : "grow without end");
     }
   }
 }

@@ -116,11 +116,9 @@ bool by_rows(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& f
 
 }  // namespace
 
-void soften_standing(Eigen::MatrixXd& a) {
-  if (a.size() == 0) return;
-  const double softest = a.diagonal().maxCoeff();
-  for (Eigen::Index i = 0; i < a.rows(); ++i)
-    if (a(i, i) == 0.0) a(i, i) = softest > 0.0 ? softest : 1.0;
+void forget_roundings(const Eigen::MatrixXd& a, double rounding, Vector& gap) {
+  for (Eigen::Index i = 0; i < gap.size(); ++i)
+    if (a(i, i) == 0.0 && gap(i) < 0.0 && gap(i) >= -rounding) gap(i) = 0.0;
 }
 
 bool unilateral_forces(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,

@@ -20,6 +20,7 @@ struct Shipped {
   std::string name;
   std::vector<std::string> smaller;  // in place of its own
   double same;                       // part of the impulse that the sweeps' tolerance leaves open
+  std::string finder = {};           // empty: chosen
 };
 
 std::string mesh_of(const std::string& body, const std::string& kind, int core, int layers) {
@@ -39,12 +40,15 @@ std::vector<Shipped> shipped_scenes() {
     all.push_back(more);
     return all;
   };
+  // Their surfaces are alike, so that names would choose. In windows of 24 substeps sweeps are 5.8
+  // where this one finds the contact, and 7.5 where the other does, of three layers of cells.
+  const std::string thinner = "interfaces.impact.transmission.unilateral.kinematic=right.skin";
   return {{"balls", balls, 1.0e-5},
           {"disks_oblique", disks, 1.0e-3},
           {"disks_head_on", disks, 1.0e-3},
           {"bars_2d", {}, 1.0e-5},
           {"bars_2d_implicit", {}, 1.0e-5},
-          {"balls", with(balls, "time.window=9.6e-5"), 1.0e-5},
+          {"balls", with(balls, "time.window=9.6e-5"), 1.0e-5, thinner},
           {"bars_2d", with({}, "time.window=2.5e-4"), 1.0e-5}};
 }
 
@@ -59,8 +63,10 @@ TEST(NoRoomForKernels, ContactConvergesToTheSame) {
   for (const Shipped& scene : shipped_scenes()) {
     std::vector<std::string> overrides = scene.smaller;
     overrides.push_back("meta.expect=[]");
+    if (!scene.finder.empty()) overrides.push_back(scene.finder);
     const auto usual = run_file(folder + scene.name + ".yaml", overrides);
     overrides.push_back(no_room);
+    if (!scene.finder.empty()) overrides.push_back(scene.finder);
     const auto alone = run_file(folder + scene.name + ".yaml", overrides);
     ASSERT_TRUE(usual->completed()) << scene.name;
     expect_goals(*alone, scene.name);
