@@ -194,10 +194,6 @@ void SurfaceContact::guess_forces() {
 }
 
 bool SurfaceContact::find_forces() {
-  constexpr double rounding = 1.0e-6;  // of an edge: of places, in whatever units
-  if (gaps_.allFinite() && !meetings_.empty())
-    forget_roundings(compliance_, rounding * surfaces_[meetings_[0].own].surface.geometry->spacing,
-                     gaps_);
   if (!rubs_) return unilateral_forces(compliance_, gaps_, row_force_, buffers_);
   if (row_force_.size() != gaps_.size()) guess_forces();
   return friction_forces(compliance_, gaps_, rows_, row_force_, friction_buffers_);

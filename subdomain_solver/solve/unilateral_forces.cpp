@@ -116,11 +116,6 @@ bool by_rows(const Eigen::MatrixXd& a, const Vector& gap, double soft, Vector& f
 
 }  // namespace
 
-void forget_roundings(const Eigen::MatrixXd& a, double rounding, Vector& gap) {
-  for (Eigen::Index i = 0; i < gap.size(); ++i)
-    if (a(i, i) == 0.0 && gap(i) < 0.0 && gap(i) >= -rounding) gap(i) = 0.0;
-}
-
 bool unilateral_forces(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,
                        UnilateralBuffers& buffers) {
   if (!gap.allFinite() || !a.allFinite()) return false;

@@ -24,9 +24,4 @@ struct UnilateralBuffers {
 [[nodiscard]] bool unilateral_forces(const Eigen::MatrixXd& a, const Vector& gap, Vector& force,
                                      UnilateralBuffers& buffers);
 
-/// Rows of A [m/N] that no force moves, as of held points before a tool, have no gap [m] where
-/// theirs is a rounding: the force that closes it is infinite. What supports drive into a tool they
-/// do not forget.
-void forget_roundings(const Eigen::MatrixXd& a, double rounding, Eigen::VectorXd& gap);
-
 }  // namespace abut

@@ -196,38 +196,5 @@ TEST(StaticColumns, TakeFewSweepsWhateverTheLawOfTheGround) {
   }
 }
 
-/// A cantilever's clamped corner stands a rounding deep in a table, and cannot give way; the table
-/// bears what presses on the rest.
-TEST(StaticColumns, HeldPointsMayTouchATool) {
-  constexpr double rounding = 4.0e-11;  // [m]
-  for (const std::string friction : {"", "friction: 0.2"}) {
-    SCOPED_TRACE(friction);
-    const SolidText block{
-        .name = "block",
-        .material =
-            "saint_venant_kirchhoff: {youngs_modulus: 1.5e9, poissons_ratio: 0.3, density: 1200.0}",
-        .integrator = "quasi_static: {step: 0.25}",
-        .port = "low",
-        .side = "bottom",
-        .more = "    constraints: {clamp: {on: left, fixed: true}}\n"
-                "    loads: {weight: {on: top, pressure: \"1.0e6 * t\"}}\n",
-        .block = block_in(2, {0.01, 0.005}, {6, 3})};
-    const SolidText table{.name = "table",
-                          .position = {-0.02, -0.003 + rounding},
-                          .port = "top",
-                          .side = "top",
-                          .model = "rigid_tool",
-                          .block = block_in(2, {0.04, 0.003}, {1, 1})};
-    const auto run = run_solids(
-        1.0, 0.25, {block, table},
-        "  seat: {sides: [block.low, table.top], contact: {" + friction + "}}\n");
-    ASSERT_TRUE(run->completed()) << run->end.reason;
-    EXPECT_EQ(run->end.given_up.windows, 0);
-    // Half and more of 1e4 N/m; the clamp has the rest.
-    EXPECT_GT(run->measure("contact.seat.force_peak"), 5.0e3);
-    EXPECT_LT(run->measure("contact.seat.force_peak"), 1.0e4);
-  }
-}
-
 }  // namespace
 }  // namespace abut::static_columns_tests
