@@ -36,7 +36,7 @@ class Pair {
     std::vector<Vector> places = surfaces_.reference();
     for (Vector& place : places) place.y() *= squeezed;
     for (std::size_t p = 0; p < places.size(); ++p)
-      if (surfaces_.skin().group[p] == 1) places[p] += by;
+      if (surfaces_[static_cast<std::int32_t>(p)].body == 1) places[p] += by;
     return places;
   }
   std::vector<DistanceRow> begin(const Vector& by) {
