@@ -167,6 +167,7 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   double slowest = 0.0;
   for (int b : bodies) {
     Response& response = answers_[b];
+    response = Response();  // nothing of an earlier answer is left in it
     Outcome outcome = finish((*this)[b], response);
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
