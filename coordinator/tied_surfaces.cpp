@@ -33,8 +33,7 @@ void check_side(const Description& body, const PortGeometry& face, const std::st
 
 int coarser_mesh(const std::array<Side, 2>& sides, const Bodies& bodies) {
   const auto spacing = [&](std::size_t s) { return bodies.port(sides[s]).geometry.spacing; };
-  if (nearly_equal(spacing(0), spacing(1))) return bodies.first_named(sides);
-  return spacing(0) > spacing(1) ? 0 : 1;
+  return bodies.side_of_less(sides, -spacing(0), -spacing(1));
 }
 
 /// The side of longer steps has the force: on the other one energy would be kept and the motion

@@ -96,6 +96,7 @@ void Body::begin_replies(const Advance& request, Response& response) {
       port.reactions[k].slid.clear();
     }
     port.ahead.clear();
+    port.ahead.width = 1;
     port.lower.clear();
     port.upper.clear();
     port.slowest.clear();

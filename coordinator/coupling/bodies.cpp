@@ -13,6 +13,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/nearly.hpp"
 #include "contract/kernel_parts.hpp"
 #include "coordinator/coupling/kernel_support.hpp"
 #include "coordinator/coupling/port_pose.hpp"
@@ -167,7 +168,6 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   double slowest = 0.0;
   for (int b : bodies) {
     Response& response = answers_[b];
-    response = Response();  // nothing of an earlier answer is left in it
     Outcome outcome = finish((*this)[b], response);
     ++exchanges_;
     if (Failed* failure = std::get_if<Failed>(&outcome); failure != nullptr) {
@@ -187,7 +187,8 @@ std::optional<Failed> Bodies::advance(std::span<const int> bodies) {
   return failed;
 }
 
-int Bodies::first_named(const std::array<Side, 2>& sides) const {
+int Bodies::side_of_less(const std::array<Side, 2>& sides, double one, double other) const {
+  if (!nearly_equal(one, other)) return one < other ? 0 : 1;
   const auto name = [this](const Side& side) {
     return std::tie(describe(side.body).name, port(side).name);
   };

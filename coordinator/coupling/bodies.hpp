@@ -52,9 +52,9 @@ class Bodies {
     ++exchanges_;
     return *subdomains_[body]->passive();
   }
-  /// Which of two sides comes first by its body's name and its port's: what chooses between sides
-  /// that are alike, however a scene lists bodies, interfaces and their sides.
-  int first_named(const std::array<Side, 2>& sides) const;
+  /// Of the side that has less. Of sides that have as much, but for roundings, that whose body's
+  /// name and port's come first: however a scene lists bodies, interfaces and their sides.
+  int side_of_less(const std::array<Side, 2>& sides, double one, double other) const;
   const Port& port(const Side& side) const { return describe(side.body).ports[side.port]; }
   Advance& request(int body) { return requests_[body]; }
   const Advance& request(int body) const { return requests_[body]; }

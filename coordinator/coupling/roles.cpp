@@ -66,8 +66,7 @@ int Roles::wish(const Joint& joint) {
   if (moved[0] > similar * moved[1]) return 0;
   if (moved[1] > similar * moved[0]) return 1;
   if (!nearly_equal(spacing[0], spacing[1])) return spacing[0] < spacing[1] ? 0 : 1;
-  if (!nearly_equal(step[0], step[1])) return step[0] < step[1] ? 0 : 1;
-  return bodies_.first_named(joint.sides);
+  return bodies_.side_of_less(joint.sides, step[0], step[1]);
 }
 
 std::optional<int> shorter_steps(const Joint& joint, const Bodies& bodies) {
@@ -108,8 +107,7 @@ int contact_finder(const Joint& joint, const Bodies& bodies) {
   }
   if (const std::optional<int> shorter = shorter_steps(joint, bodies)) return *shorter;
   if (yields[0] != yields[1]) return yields[0] ? 1 : 0;
-  if (nearly_equal(spacing[0], spacing[1])) return bodies.first_named(joint.sides);
-  return spacing[0] < spacing[1] ? 0 : 1;
+  return bodies.side_of_less(joint.sides, spacing[0], spacing[1]);
 }
 
 void Roles::settle(Joint& joint, int kinematic, bool may_turn) {
@@ -197,8 +195,7 @@ double stable_step_in_contact(const Joint& joint, Bodies& bodies, double length)
 int coarser_side(const Joint& joint, const Bodies& bodies) {
   const double step0 = bodies.describe(joint.sides[0].body).step;
   const double step1 = bodies.describe(joint.sides[1].body).step;
-  if (nearly_equal(step0, step1)) return bodies.first_named(joint.sides);
-  return step0 > step1 ? 0 : 1;
+  return bodies.side_of_less(joint.sides, -step0, -step1);
 }
 
 void BodyOrder::state(Archive& archive) {

@@ -174,6 +174,7 @@ void clear(PortResponse& port, std::size_t obstacles) {
   port.slowest.clear();
   port.fastest.clear();
   port.speed_bound = port.acceleration_bound = port.work = 0.0;
+  port.ahead.width = 1;  // of a waveform that is not told
   port.recoil.reset();
 }
 

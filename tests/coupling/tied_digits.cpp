@@ -57,15 +57,10 @@ Forces run(double sheared) {
       "interfaces:\n  hit: {sides: [slab.top, hammer.bottom], contact: {}}\n" +
           joined("foot", "post.right", "plinth.left") + joined("side", "post.right", "slab.left") +
           joined("seat", "plinth.top", "slab.bottom"));
-  const Document document = Document::from_text("test", text);
-  const Scene scene = read_scene(document);
-  const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(scene, document);
-  std::vector<Subdomain*> pointers;
-  for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
   Forces forces;
-  const RunEnd end = Controller(scene, pointers, {&forces}).run();
-  EXPECT_EQ(end.status, "completed") << end.reason;
-  EXPECT_GT(end.given_up.windows, 0);  // both ways are gone
+  const ResultPtr run = run_text(text, &forces);
+  EXPECT_TRUE(run->completed()) << run->end.reason;
+  EXPECT_GT(run->end.given_up.windows, 0);  // both ways are gone
   EXPECT_GT(forces.windows, 0);
   return forces;
 }

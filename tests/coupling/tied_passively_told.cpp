@@ -98,23 +98,14 @@ std::string text_of(const Upper& u, double end) {
                     joints);
 }
 
-/// Runs a scene; the observer sees it.
-RunEnd watch(const std::string& text, RunResult& result, Told& told) {
-  const Document document = Document::from_text("test", text);
-  const Scene scene = read_scene(document);
-  const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(scene, document);
-  std::vector<Subdomain*> pointers;
-  for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
-  return Controller(scene, pointers, {&result, &told}).run();
-}
-
 class TiedPassivelyTold : public testing::TestWithParam<Upper> {};
 
 TEST_P(TiedPassivelyTold, PortsTellWhatMovesTheBody) {
   const Upper& u = GetParam();
-  RunResult result;
   Told told(1);
-  const RunEnd end = watch(text_of(u, 2.0e-3), result, told);
+  const ResultPtr run = run_text(text_of(u, 2.0e-3), &told);
+  const RunResult& result = *run;
+  const RunEnd& end = result.end;
   ASSERT_EQ(end.status, "completed") << end.reason;
   ASSERT_GT(told.windows, 5);
   const double size = 3.0 * result.masses[1];
@@ -161,9 +152,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(TiedPassivelyTold, ReturnWhenTheyFlyAgain) {
   const Upper u{.name = "unlike_meshes"};
-  RunResult result;
   Told told(1);
-  const RunEnd end = watch(text_of(u, 1.2e-2), result, told);
+  const ResultPtr run = run_text(text_of(u, 1.2e-2), &told);
+  const RunResult& result = *run;
+  const RunEnd& end = result.end;
   ASSERT_EQ(end.status, "completed") << end.reason;
   EXPECT_GT(end.given_up.windows, 0);
   EXPECT_GT(result.rows.back().iterations, 0);  // the accurate method has the last window

@@ -42,13 +42,8 @@ struct Balance : Observer {
 };
 
 Balance balance_of(const std::string& text) {
-  const Document document = Document::from_text("test", text);
-  const Scene scene = read_scene(document);
-  const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(scene, document);
-  std::vector<Subdomain*> pointers;
-  for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
   Balance balance;
-  Controller(scene, pointers, {&balance}).run();
+  run_text(text, &balance);
   return balance;
 }
 

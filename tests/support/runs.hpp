@@ -141,7 +141,8 @@ struct RunResult : Observer {
 
 using ResultPtr = std::unique_ptr<RunResult>;
 
-inline ResultPtr run_document(const Document& document) {
+/// `also`: sees the run, too; may be null.
+inline ResultPtr run_document(const Document& document, Observer* also = nullptr) {
   const Scene scene = read_scene(document);
   const std::vector<std::unique_ptr<Subdomain>> bodies = launch_local(scene, document);
   std::vector<Subdomain*> pointers;
@@ -155,14 +156,16 @@ inline ResultPtr run_document(const Document& document) {
   std::unique_ptr<RunResult> result = std::make_unique<RunResult>();
   MeasureRecorder recorder(form ? &*form : nullptr, scene.output.force_filter,
                            scene.output.steady_after);
-  Controller(scene, pointers, {&recorder, result.get()}).run();
+  std::vector<Observer*> observers = {&recorder, result.get()};
+  if (also != nullptr) observers.push_back(also);
+  Controller(scene, pointers, observers).run();
   result->measures = recorder.measures();
   return result;
 }
 
 /// Runs a scene as a file would say it.
-inline ResultPtr run_text(const std::string& text) {
-  return run_document(Document::from_text("test", text));
+inline ResultPtr run_text(const std::string& text, Observer* also = nullptr) {
+  return run_document(Document::from_text("test", text), also);
 }
 
 /// Runs a scene that begins at time 0 (scene_text).
