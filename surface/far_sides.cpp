@@ -14,18 +14,37 @@ bool is_behind(const PosedSurface& k, const PosedSurface& n, const FacetPair& pa
   return mean_normal(seen).dot(centre(corners(k, pair.k)) - centre(seen)) < -depth;
 }
 
-bool sees_through(const Eigen::Vector3d& place, const PosedSurface& other, const BoxTree& tree,
-                  int facet, double depth) {
+namespace {
+
+NearestPoint nearest_point(const Eigen::Vector3d& place, const PosedSurface& other,
+                           const BoxTree& tree) {
+  const std::optional<SurfacePoint> found = closest_point(other, tree, place);
+  if (!found) return {NearestPoint::none, place};
+  return {found->facet, found->at.point};
+}
+
+/// `nearest()` gives what of `other` is nearest to the place: a search, which most places need not.
+template <typename Nearest>
+bool sees_through(const Eigen::Vector3d& place, const PosedSurface& other, int facet, double depth,
+                  const Nearest& nearest) {
   const Corners seen = corners(other, facet);
   const Eigen::Vector3d out = mean_normal(seen), on = centre(seen);
   const double height = out.dot(place - on);
   if (!(height < -depth)) return false;
-  const std::optional<SurfacePoint> nearest = closest_point(other, tree, place);
-  if (!nearest) return false;
-  const Eigen::Vector3d way = place - nearest->at.point;
-  const bool inside = way.dot(mean_normal(corners(other, nearest->facet))) <= 0.0;
-  const double between = out.dot(nearest->at.point - on);
+  const NearestPoint& found = nearest();
+  if (found.facet == NearestPoint::none) return false;
+  const Eigen::Vector3d way = place - found.point;
+  const bool inside = way.dot(mean_normal(corners(other, found.facet))) <= 0.0;
+  const double between = out.dot(found.point - on);
   return !inside && between < -depth && between > height + depth;
+}
+
+}  // namespace
+
+bool sees_through(const Eigen::Vector3d& place, const PosedSurface& other, const BoxTree& tree,
+                  int facet, double depth) {
+  return sees_through(place, other, facet, depth,
+                      [&] { return nearest_point(place, other, tree); });
 }
 
 void FarSides::leave_out(const PosedSurface& k, const PosedSurface& n, double depth,
@@ -35,10 +54,20 @@ void FarSides::leave_out(const PosedSurface& k, const PosedSurface& n, double de
   if (std::ranges::none_of(pairs, deep)) return;
   build(k_tree_, k, 0.0);
   build(n_tree_, n, 0.0);
+  of_k_.assign(k.facet_count(), {});
+  of_n_.assign(n.facet_count(), {});
+  // a facet is in many pairs, and what is nearest to its middle is the same in all of them
+  const auto middle_sees = [depth](const PosedSurface& from, int facet, const PosedSurface& other,
+                                   const BoxTree& tree, int seen, NearestPoint& nearest) {
+    const Eigen::Vector3d place = centre(corners(from, facet));
+    return sees_through(place, other, seen, depth, [&]() -> const NearestPoint& {
+      if (nearest.facet == NearestPoint::unknown) nearest = nearest_point(place, other, tree);
+      return nearest;
+    });
+  };
   std::ranges::copy_if(pairs, std::back_inserter(dropped_), [&](const FacetPair& pair) {
-    if (!deep(pair)) return false;
-    return sees_through(centre(corners(k, pair.k)), n, n_tree_, pair.n, depth) ||
-           sees_through(centre(corners(n, pair.n)), k, k_tree_, pair.k, depth);
+    return deep(pair) && (middle_sees(k, pair.k, n, n_tree_, pair.n, of_k_[pair.k]) ||
+                          middle_sees(n, pair.n, k, k_tree_, pair.k, of_n_[pair.n]));
   });
   std::erase_if(pairs, [this](const FacetPair& pair) { return drops(pair); });
 }

@@ -13,6 +13,13 @@ namespace abut {
 // other by as much as both bodies are thick, though neither body is in the other one. Contact has
 // no rows there.
 
+/// What of a surface is nearest to a place.
+struct NearestPoint {
+  static constexpr int none = -1, unknown = -2;
+  int facet = unknown;
+  Eigen::Vector3d point;  // [m] on that facet
+};
+
 /// Whether a place of one body, behind a facet of `other`, sees that facet through `other`: what is
 /// nearest of `other` lies between them, and the place is not in it. `tree` holds the boxes of
 /// `other` in this pose; `depth` [m]: what is less far behind is not looked at.
@@ -38,6 +45,7 @@ class FarSides {
  private:
   std::vector<FacetPair> dropped_;  // ascending, as pairs are
   BoxTree k_tree_, n_tree_;
+  std::vector<NearestPoint> of_k_, of_n_;  // what is nearest to the middle of a facet, once asked
 };
 
 }  // namespace abut
