@@ -63,7 +63,7 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     description_.can.impulse = joins_ && !description_.quasi_static;
     places_.assign(port_map_->values(), 0.0);
     worked_.assign(ports_.size(), 0.0);
-    before_ = now_ = seen_.u = state_.port_force = places_;
+    left_ = before_ = now_ = seen_.u = state_.port_force = places_;
     change_.setZero(parts_.problem->model->dofs());
     parts_.problem->loads.push_back(std::move(forces));
     find_contacts();
@@ -262,8 +262,9 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   substep_ = 0;
   if (contact_) contact_->impose(window);
   parts_.problem->contact = contact_ && contact_->acts() ? contact_.get() : nullptr;
+  if (parts_.problem->contact != nullptr) port_map_->displacement(state_.motion.q, left_);
   if (std::optional<Failed> failed = meet_port_forces(time)) return failed;
-  if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force, places_);
+  if (parts_.problem->contact != nullptr) contact_->aim(0, state_.port_force, left_);
   if (!state_.begun) {
     const bool without_ties =
         port_forces_ != nullptr && parts_.scheme.integrator->able().accelerates_without_ties;
@@ -288,11 +289,13 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   Integrator& integrator = *parts_.scheme.integrator;
   const double begin = window.grid.time(i - 1), dt = window.grid.length(i);
   substep_ = i;
+  if (i > 1) left_ = places_;
   if (joins_ && i > 1) {  // forces of joined sides jump
     port_forces_->enter(i);
     if (std::optional<Failed> failed = meet_port_forces(begin)) return failed;
   }
-  if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force, places_);
+  // Slip is counted from where the surface was: what has no mass jumps with forces of joined sides.
+  if (parts_.problem->contact != nullptr) contact_->aim(i, state_.port_force, left_);
   if (!description_.loose.empty()) {
     const std::span<const double> carry = window.request.carry;
     const std::size_t each = index(loose_motions(description_));

@@ -188,7 +188,7 @@ class SolidInterior final : public Interior,
   std::vector<double> u_, v_;  // (nodes, dim) along the axes of space, as see_nodes() left them
   std::vector<double> lag_;                  // [m/s] of velocities behind the impulses
   Vector momentum_, behind_, nodes_behind_;  // [kg m/s]; behind the impulses: of coordinates, nodes
-  std::vector<double> places_, before_, now_;  // [m], [m], [N] (port values)
+  std::vector<double> places_, left_, before_, now_;  // [m] (left by a substep), [N] (port values)
   mutable Vector change_, on_ports_;         // [N] (coordinates), (nodes, dim)
   std::unique_ptr<PortForecast> forecast_;   // null: only walks tell where ports go
   std::unique_ptr<PortStatics> statics_;     // null: the body has inertia, or no ports
