@@ -44,7 +44,9 @@ void Steps::next(Iterate& it, Bodies& bodies) {
     eased_ = false;
     net_.withdraw(bodies);
   }
-  if (net_.renew(it.x, it.g, bodies) || net_.projects() || eased_) {
+  // The derivative of ties alone says nothing of contact that sticks beside them.
+  const bool derived = net_.renew(it.x, it.g, bodies) && (!beside_ties_ || eased_);
+  if (derived || net_.projects() || eased_) {
     it.x += net_.inverse(it.g - it.x);
     return;
   }
