@@ -265,7 +265,12 @@ std::optional<Document> Document::next_stage() const {
   if (before_ == nullptr) return std::nullopt;
   std::optional<NextStage> next = abut::next_stage(before_->root());
   if (!next) return std::nullopt;
-  return from_text(fmt::format("{}, stage {}", name_, next->name), std::move(next->text), later_);
+  Document stage =
+      from_text(fmt::format("{}, stage {}", name_, next->name), std::move(next->text), later_);
+  stage.origin_ = std::make_unique<StageOrigin>(
+      origin_ != nullptr ? *origin_ : StageOrigin(before_->root(), name_));
+  stage.origin_->add(next->name);
+  return stage;
 }
 
 const YAML::Node& Document::root() const { return tree_->root(); }
@@ -349,6 +354,7 @@ std::string Document::place_of(std::string_view path, std::string_view shown) co
                              there == path ? "" : ", which adds " + there, shown);
     }
   }
+  if (origin_ != nullptr && !path.empty()) return origin_->place_of(steps, shown);
   const std::string file = line > 0 ? fmt::format("{}:{}", name_, line) : name_;
   return path.empty() ? file : fmt::format("{}: {}", file, shown);
 }

@@ -15,6 +15,7 @@ class Node;
 namespace abut {
 
 class Copies;
+class StageOrigin;
 class YamlTree;
 
 /// First keys of a document that were read with a unit of their own and without one.
@@ -59,8 +60,8 @@ class Document {
   /// written once.
   std::string where(std::string_view path) const;
 
-  /// The scene of the stage that follows this one, where `stages` has one: text, places and
-  /// overrides are its own.
+  /// The scene of the stage that follows this one, where `stages` has one: text and overrides are
+  /// its own, places those of the file: in a stage that says it, or in the scene.
   std::optional<Document> next_stage() const;
 
   /// The body that another one is a copy of; empty: none.
@@ -97,6 +98,7 @@ class Document {
   // Of a scene with stages: with the overrides that have their place there, and the others.
   std::unique_ptr<YamlTree> before_;
   std::vector<std::string> later_;
+  std::unique_ptr<StageOrigin> origin_;  // of the scene of a stage; null: it is no stage
 };
 
 /// "bodies.left[0]" into "bodies", "left", "[0]".

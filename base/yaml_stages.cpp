@@ -1,5 +1,6 @@
 #include "base/yaml_stages.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -127,6 +128,26 @@ std::optional<NextStage> next_stage(const YAML::Node& scene) {
   mark_after_statics(scene, out);
   if (rest.size() > 0) out["stages"] = YAML::Clone(rest);
   return NextStage{name, YAML::Dump(out)};
+}
+
+StageOrigin::StageOrigin(const YAML::Node& scene, std::string file)
+    : scene_(std::make_shared<YamlTree>(scene)), file_(std::move(file)) {}
+
+std::string StageOrigin::place_of(std::span<const std::string> path, std::string_view shown) const {
+  std::size_t most = 0;
+  int line = 0;
+  const auto look = [&](std::vector<std::string> steps) {
+    const std::size_t above = steps.size();
+    steps.insert(steps.end(), path.begin(), path.end());
+    const std::vector<Found> way = scene_->walk(steps);
+    if (way.size() <= above + most) return;
+    most = way.size() - above;
+    line = way.back().line;
+  };
+  for (auto stage = stages_.rbegin(); stage != stages_.rend(); ++stage) look({"stages", *stage});
+  look({});
+  const std::string where = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
+  return fmt::format("{}: {} (stage {})", where, shown, stages_.back());
 }
 
 }  // namespace abut

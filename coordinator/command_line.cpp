@@ -56,6 +56,14 @@ void add_insecure(CLI::App& verb, bool& insecure) {
                 "wait for bodies of other machines without keys, on a network that you trust");
 }
 
+void add_grace(CLI::App& verb, unsigned& grace) {
+  verb.add_option("--grace", grace,
+                  "time that the window under way has where a signal ends the run, for a state to "
+                  "go on from; default 10, and a second signal ends it at once")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1, 86'400).description(""));
+}
+
 /// Absent, unless the option that makes it is there.
 struct AwaitWords {
   Awaited words;
@@ -94,6 +102,7 @@ CLI::App& add_run(CLI::App& app, RunCommand& run, AwaitWords& await) {
   add_await(verb, await);
   add_insecure(verb, run.insecure);
   add_trace(verb, run.trace);
+  add_grace(verb, run.grace);
   return verb;
 }
 
@@ -112,6 +121,7 @@ CLI::App& add_resume(CLI::App& app, ResumeCommand& resume, AwaitWords& await) {
   add_await(verb, await);
   add_insecure(verb, resume.insecure);
   add_trace(verb, resume.trace);
+  add_grace(verb, resume.grace);
   return verb;
 }
 

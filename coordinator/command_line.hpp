@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/awaited.hpp"
+#include "coordinator/interrupt.hpp"
 
 namespace abut {
 
@@ -17,6 +18,7 @@ struct RunCommand {
   bool quiet = false;
   bool force = false;
   bool insecure = false;
+  unsigned grace = usual_grace;
   bool trace = false;
   std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };
@@ -28,6 +30,7 @@ struct ResumeCommand {
   bool local = false;
   bool quiet = false;
   bool insecure = false;
+  unsigned grace = usual_grace;
   bool trace = false;
   std::optional<Awaited> awaited;
 };

@@ -45,7 +45,7 @@ struct Pause {
 ///   go_passively  what the iteration cannot take, bodies take passively (controller_passive.cpp)
 ///
 /// When windows are cut and what contact carries on is ContactEvents' affair; the iteration inside
-/// a window is that of Schwarz; what is told of all this, the Narrator's.
+/// a window is that of Schwarz; what is told, the Narrator's.
 class Controller {
  public:
   /// The bodies must outlive it. `interrupted`: the run is to end between windows; may be null.
@@ -60,19 +60,18 @@ class Controller {
   /// come depend on, beside the scene and the bodies' own states.
   std::vector<std::byte> save();
   /// Before `run`, which then goes on from there and tells nothing of the start. Tells the bodies
-  /// whom they have met; afterwards they must be given their states of that time. Throws RunError
-  /// where bytes are of another scene.
+  /// whom they have met; then they must be given their states. Throws RunError where bytes are of
+  /// another scene.
   void load(std::span<const std::byte> bytes);
   /// The same of the run whose end is the begin of this stage: it begins as a scene does, where
-  /// bodies stand, and with those that have met.
-  /// `handed`: by body, of those that are another one now; throws RunError where these touch.
+  /// bodies stand, and with those that have met. `handed`: by body, of those that are another one
+  /// now; throws RunError where these touch.
   void load_end(std::span<const std::byte> bytes, std::vector<std::optional<HandOver>> handed = {});
   const BodyRecord& record(int body) const { return bodies_.response(body).records.back(); }
   /// Who is told what the run's time goes into: "window", "flight", "island" and so on.
   void tell_spans(SpanSink sink) { bodies_.tell_spans(std::move(sink)); }
   const SpanSink& spans() const { return bodies_.spans(); }
-  /// Whether bodies stay in their passive forms where the stage ends; they leave them if they can.
-  bool stays_passive();
+  bool stays_passive();  // where the stage ends; bodies leave their passive forms if they can
   /// Called by `run` before every window or flight, and after the last one of a run that has not
   /// failed; may call `save`.
   std::function<void(const Pause&)> between_windows;
@@ -152,7 +151,7 @@ class Controller {
   void accept_passively(const TimeWindow& window);
   void go_accurately();
   GivenUp given_up() const;
-  void tell_losses(const GivenUp& given_up);
+  void tell_losses();
   bool leave_apart();
   bool rejoin();
   void fail(double time, const std::string& text);
@@ -162,6 +161,7 @@ class Controller {
   bool ends_before(const TimeWindow& window);
   void stop();
   void state(Archive& archive);
+  void totals(Archive& archive);
   void memory(Archive& archive);
   void counts(Archive& archive);
   void tell_start();  // of a run that goes on

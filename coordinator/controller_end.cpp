@@ -57,8 +57,9 @@ void Controller::judge(int body) {
 
 /// What bodies have lost in steps of their own, and contact between them, beside friction and what
 /// the passive way has given up.
-void Controller::tell_losses(const GivenUp& given_up) {
+void Controller::tell_losses() {
   if (passive_.statics()) return;
+  const std::vector<double>& taken = passive_.ledger().taken;
   const double notable = 0.05 * guard_.most();  // by which motion is a fortieth slower
   double lost = -guard_.change() - passive_.ledger().given_up();
   for (const Joint& joint : joints_) lost -= dissipated(joint);
@@ -66,7 +67,7 @@ void Controller::tell_losses(const GivenUp& given_up) {
   for (int b = 0; b < bodies_.count(); ++b) {
     const Description& body = bodies_.describe(b);
     if (!std::isfinite(body.mass)) continue;  // what drives it works through it
-    const double passive = index(b) < given_up.taken.size() ? given_up.taken[index(b)] : 0.0;
+    const double passive = index(b) < taken.size() ? taken[index(b)] : 0.0;
     const double own = -guard_.unexplained(b) - passive;
     lost -= own;
     if (body.step > bodies_.describe(coarsest).step) coarsest = b;
@@ -88,8 +89,9 @@ void Controller::tell_losses(const GivenUp& given_up) {
 }
 
 void Controller::look_for_overlaps() {
-  for (const Overlap& overlap : overlaps_.look(bodies_, joints_, clock_.time())) {
-    narrator_.overlap(overlap, joints_);
+  const bool all_touch = scene_.everything() != nullptr;
+  for (const Overlap& overlap : overlaps_.look(bodies_, joints_, clock_.time(), all_touch)) {
+    narrator_.overlap(overlap, joints_, all_touch);
     const auto before = std::ranges::find_if(end_.overlaps, [&overlap](const Overlap& told) {
       return std::ranges::equal(told.body, overlap.body);
     });
@@ -134,7 +136,7 @@ RunEnd Controller::finish(double wall_seconds) {
     judge(b);
   }
   end_.given_up = given_up();
-  tell_losses(end_.given_up);
+  tell_losses();
   narrator_.given_up(end_);
   narrator_.end(end_);
   return end_;

@@ -297,7 +297,7 @@ bool Controller::stays_passive() {
 }
 
 GivenUp Controller::given_up() const {
-  const PassiveLedger& passive = passive_.ledger();
+  const PassiveLedger passive = passive_.of_all_stages();
   return {.statics = passive_.statics(),
           .windows = passive.windows,
           .halved_windows = passive.halved_windows,
@@ -317,7 +317,8 @@ GivenUp Controller::given_up() const {
           .push_out = passive.push_out,
           .repaid = passive.repaid,
           .deepest = passive.deepest,
-          .largest = std::max(guard_.most(), energy_put_in(bodies_, passive)),
+          .largest = std::max({end_.given_up.largest, guard_.most(),
+                               energy_put_in(bodies_, passive_.ledger())}),
           .lost = passive.lost,
           .taken = passive.taken,
           .refused_by = passive.refused_by};

@@ -14,6 +14,7 @@ std::vector<std::byte> Controller::save() {
   std::vector<std::byte> bytes;
   Archive archive = Archive::writer(bytes, Archive::Form::named);
   state_of_pairs(archive);
+  totals(archive);
   state(archive);
   memory(archive);
   counts(archive);
@@ -26,6 +27,7 @@ void Controller::load(std::span<const std::byte> bytes) {
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
+  totals(archive);
   state(archive);
   memory(archive);
   counts(archive);
@@ -40,6 +42,8 @@ void Controller::load_end(std::span<const std::byte> bytes,
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
+  totals(archive);
+  passive_.begin_stage();
   std::vector<Role> roles;  // chosen for the schemes of this stage
   for (const Joint& joint : joints_) roles.push_back(joint.role);
   state(archive);  // what presses goes on pressing, and files are numbered by all windows
@@ -91,14 +95,22 @@ void Controller::memory(Archive& archive) {
   if (event_) event_->state(archive);
 }
 
-/// What a run counts and tells at its end, of all its windows; and how long these were, which a
+/// What a run counts over all its stages.
+void Controller::totals(Archive& archive) {
+  bodies_.counts(archive);
+  archive.field("contact_windows", end_.contact_windows);
+  double largest = archive.writing() ? given_up().largest : 0.0;
+  archive.field("largest", largest);
+  if (!archive.writing()) end_.given_up.largest = largest;
+  passive_.totals(archive);
+}
+
+/// What a stage counts and tells at its end, of all its windows; and how long these were, which a
 /// resumed run may change.
 void Controller::counts(Archive& archive) {
   double window = scene_.time.window;
   archive.field("window", window);
   if (window != scene_.time.window) clock_.anchor();
-  bodies_.counts(archive);
-  archive.field("contact_windows", end_.contact_windows);
   list(archive, "overlaps", end_.overlaps, [](Archive& a, Overlap& overlap) {
     for (int& body : overlap.body) whole(a, "body", body);
     a.field("depth", overlap.depth);

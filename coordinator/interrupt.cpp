@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <string_view>
 
 namespace abut {
 namespace {
@@ -10,9 +11,17 @@ namespace {
 std::atomic<bool> asked{false}, at_once{false};
 std::atomic<int> caught{0};
 std::atomic<unsigned> patience{0};  // [s]
+std::atomic<bool> tells{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
                   std::atomic<unsigned>::is_always_lock_free,
               "a signal handler may touch these only when no lock is involved");
+
+/// With what a signal handler may use.
+void tell_of_patience() {
+  constexpr std::string_view text =
+      "\nThe window under way is waited for, to keep a state to go on from; once more: ends now.\n";
+  if (write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // nobody reads it
+}
 
 void on_signal(int signal) {
   if (signal == SIGALRM) return at_once.store(true);
@@ -25,6 +34,7 @@ void on_signal(int signal) {
     if (signal != SIGPIPE) std::signal(signal, SIG_DFL);
   } else {
     alarm(seconds);
+    if (tells.load() && signal != SIGPIPE) tell_of_patience();
   }
 }
 
@@ -46,7 +56,10 @@ Interrupts watch_for_interrupts() {
   return {asked, at_once};
 }
 
-void grant_patience(unsigned seconds) { patience.store(seconds); }
+void grant_patience(unsigned seconds, bool told) {
+  tells.store(told);
+  patience.store(seconds);
+}
 
 int interrupt_exit_code() {
   const int signal = caught.load();

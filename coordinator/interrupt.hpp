@@ -17,8 +17,11 @@ struct Interrupts {
 /// that are ignored already stay so.
 Interrupts watch_for_interrupts();
 
-/// Whoever is asked to end has so long, to come to a state that can be kept.
-void grant_patience(unsigned seconds);
+constexpr unsigned usual_grace = 10;  // [s]
+
+/// Whoever is asked to end has so long, to come to a state that can be kept; `told`: the first
+/// signal says that it is waited for.
+void grant_patience(unsigned seconds, bool told = false);
 
 /// 130 after Ctrl-C, 143 after SIGTERM and so on, as shells expect; 0 before any.
 int interrupt_exit_code();

@@ -128,14 +128,17 @@ void Narrator::lowered_step(const Joint& joint, double time, double limit) {
         {{"stable_step", limit}}});
 }
 
-void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints) {
+void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints, bool all_touch) {
   const auto [a, b] = overlap.body;
   const auto joint = std::ranges::find_if(joints, [&overlap](const Joint& j) {
     const auto [one, other] = overlap.body;
     return std::minmax(j.sides[0].body, j.sides[1].body) ==
            std::pair<const int&, const int&>(one, other);
   });
-  std::string advice = "no interface joins them: give one, or contact: {everything: {}}";
+  std::string advice =
+      all_touch ? "none of their ports met: give them ports that hold the sides that meet, such as "
+                  "side: boundary"
+                : "no interface joins them: give one, or contact: {everything: {}}";
   const std::vector<int> wholes = tied_wholes(joints, bodies_.count());
   if (wholes[index(a)] == wholes[index(b)])
     advice = "they hang together by ties, and parts of one whole do not touch each other: give an "

@@ -41,7 +41,7 @@ class Narrator {
   /// Warns of interference that bodies without inertia take at once.
   void pressed_in(const Joint& joint, double time);
   /// Bodies that are in each other, with the joints that there are.
-  void overlap(const Overlap& overlap, std::span<const Joint> joints);
+  void overlap(const Overlap& overlap, std::span<const Joint> joints, bool all_touch);
   /// An interface whose sides went past each other.
   void never_met(const std::string& name, double time);
   /// Bodies go on in their passive forms; the first times are told. `statics`: without inertia.

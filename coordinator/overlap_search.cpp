@@ -6,6 +6,7 @@
 
 #include "base/archive_lists.hpp"
 #include "base/index.hpp"
+#include "coordinator/coupling/tied_wholes.hpp"
 #include "surface/overlap_places.hpp"
 
 namespace abut {
@@ -84,9 +85,10 @@ void OverlapSearch::pose_all(Bodies& bodies) {
   }
 }
 
-/// Whether two bodies may overlap: they are one where they are tied, and what nothing joins may lie
-/// in one place from the start, as variants of one body do.
-bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joints) {
+/// Whether two bodies may overlap: they are one where they are tied, and what nothing joins, and
+/// does not touch everything, may lie in one place from the start, as variants of one body do.
+bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joints,
+                          bool all_touch) {
   bool joined = false;
   for (const Joint& joint : joints) {
     if (!joins(joint, pair)) continue;
@@ -94,6 +96,8 @@ bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joint
     joined = true;
   }
   if (joined) return false;
+  const std::vector<int> whole = tied_wholes(joints, static_cast<int>(hulls_.size()));
+  if (all_touch && whole[index(pair.first)] != whole[index(pair.second)]) return false;
   BodyHull one = hulls_[pair.first], other = hulls_[pair.second];
   pose(one, {});
   pose(other, {});
@@ -110,7 +114,7 @@ double OverlapSearch::fit(std::pair<int, int> pair, std::span<const Joint> joint
 }
 
 std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> joints,
-                                         double time) {
+                                         double time, bool all_touch) {
   std::vector<Overlap> found;
   if (bodies.count() < 2) return found;
   make(bodies);
@@ -123,7 +127,7 @@ std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> 
       if (deepest.depth <= fit({a, b}, joints)) continue;
       const auto told = told_.find({a, b});
       if (told != told_.end() && deepest.depth <= much_deeper * told->second) continue;
-      if (told == told_.end() && meant({a, b}, joints)) continue;
+      if (told == told_.end() && meant({a, b}, joints, all_touch)) continue;
       told_[{a, b}] = deepest.depth;
       const Eigen::Vector3d& x = deepest.place;
       found.push_back({{a, b}, deepest.depth, {x[0], x[1], x[2]}, time});

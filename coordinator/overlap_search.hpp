@@ -21,14 +21,16 @@ class OverlapSearch {
   /// as deep. Not told: bodies that are tied to each other, and those that no interface joins and
   /// that overlapped in the reference as well. Of bodies of more than a million unknowns the
   /// largest port is looked at.
-  std::vector<Overlap> look(Bodies& bodies, std::span<const Joint> joints, double time);
+  /// `all_touch`: all bodies may touch each other.
+  std::vector<Overlap> look(Bodies& bodies, std::span<const Joint> joints, double time,
+                            bool all_touch);
 
   void state(Archive& archive);  // what was told
 
  private:
   void make(Bodies& bodies);
   void pose_all(Bodies& bodies);
-  bool meant(std::pair<int, int> pair, std::span<const Joint> joints);
+  bool meant(std::pair<int, int> pair, std::span<const Joint> joints, bool all_touch);
   static double fit(std::pair<int, int> pair, std::span<const Joint> joints);
 
   bool made_ = false;

@@ -17,10 +17,25 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr int enough_windows = 3;
-constexpr double times_as_long = 2.5;  // for so many
+constexpr double times_as_long = 2.5;      // for so many
+constexpr double times_for_contact = 4.0;  // for so many in contact, which may cost ten of flight
 
 double seconds_since(SteadyClock::time_point time) {
   return std::chrono::duration<double>(SteadyClock::now() - time).count();
+}
+
+/// Something pressed in it: surfaces that are near are iterated before they do, at the cost of
+/// flight.
+bool presses(const WindowReport& report) {
+  const auto acts = [](double force) { return force != 0.0; };
+  return std::ranges::any_of(report.responses, [&](const Response& response) {
+    return std::ranges::any_of(response.ports, [&](const PortResponse& port) {
+      return std::ranges::any_of(port.trace.f, acts) ||
+             std::ranges::any_of(port.reactions, [&](const Reaction& reaction) {
+               return std::ranges::any_of(reaction.force.f, acts);
+             });
+    });
+  });
 }
 
 /// Notes what windows cost.
@@ -35,12 +50,11 @@ class Notes : public Observer {
     last_ = SteadyClock::now();
     probe.reached = report.window.end;
     if (report.window.length() <= 0.0) return;
-    ProbedRun::Stretch stretch{report.window.length(), wall, false, 1};
-    for (const InterfaceReport& interface : report.interfaces) {
-      stretch.closed = stretch.closed || interface.closed || interface.iterations > 0;
+    ProbedRun::Stretch stretch{report.window.length(), wall, presses(report), 1};
+    for (const InterfaceReport& interface : report.interfaces)
       stretch.iterations = std::max(stretch.iterations, interface.iterations);
-    }
     probe.stretches.push_back(stretch);
+    if (stretch.closed) ++pressed;
     ended = static_cast<int>(probe.stretches.size());
   }
   void on_event(const RunEvent& event) override {
@@ -48,7 +62,7 @@ class Notes : public Observer {
   }
 
   ProbedRun probe;
-  std::atomic<int> ended = 0;  // windows, for who watches the clock
+  std::atomic<int> ended = 0, pressed = 0;  // windows, for who watches the clock
 
  private:
   SteadyClock::time_point last_;
@@ -57,7 +71,7 @@ class Notes : public Observer {
 }  // namespace
 
 ProbedRun probe_run(const Scene& scene, const std::vector<Subdomain*>& bodies, double seconds,
-                    std::atomic<bool>& stop, const std::atomic<bool>& interrupted) {
+                    std::atomic<bool>& stop, const std::atomic<bool>& interrupted, bool touches) {
   Notes notes;
   BodyMeter meter(bodies.size());
   const std::vector<std::unique_ptr<Subdomain>> measured = metered(bodies, meter);
@@ -68,8 +82,10 @@ ProbedRun probe_run(const Scene& scene, const std::vector<Subdomain*>& bodies, d
   std::thread watch([&] {
     while (!over) {
       const double time = seconds_since(began);
-      const bool enough = notes.ended >= enough_windows;
-      if (interrupted || time > (enough ? seconds : times_as_long * seconds)) stop = true;
+      const double longer = notes.ended < enough_windows ? times_as_long
+                            : touches && notes.pressed < enough_windows ? times_for_contact
+                                                                        : 1.0;
+      if (interrupted || time > longer * seconds) stop = true;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   });

@@ -14,7 +14,7 @@ struct ProbedRun {
   /// A window, or a flight of several.
   struct Stretch {
     double length = 0.0, wall = 0.0;  // [s] of the scene's time, of the clock
-    bool closed = false;              // something was iterated, or pressed
+    bool closed = false;              // something pressed
     int iterations = 1;
   };
   std::vector<Stretch> stretches;      // without the start
@@ -26,10 +26,11 @@ struct ProbedRun {
 };
 
 /// Runs the scene for at most `seconds`, for two and a half times as long where fewer than three
-/// windows have ended by then, and not past the end of the window that is under way. Whoever waits
+/// windows have ended by then, four times where contact is possible (`touches`) and has pressed in
+/// fewer than three, and not past the end of the window that is under way. Whoever waits
 /// for bodies looks at `stop`, which is set at the end, or when `interrupted` is. The bodies are of
 /// no use afterwards. Nothing is written.
 ProbedRun probe_run(const Scene& scene, const std::vector<Subdomain*>& bodies, double seconds,
-                    std::atomic<bool>& stop, const std::atomic<bool>& interrupted);
+                    std::atomic<bool>& stop, const std::atomic<bool>& interrupted, bool touches);
 
 }  // namespace abut

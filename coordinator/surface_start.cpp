@@ -95,11 +95,19 @@ std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurf
   return places;
 }
 
+/// Of contact between everything (`where` is empty) nodes are not moved.
+std::string adjusting(const std::string& where) {
+  return where.empty() ? ", or write the pair under interfaces and give one of them initial: "
+                         "{adjust: true}"
+                       : ", or give one of them initial: {adjust: true}";
+}
+
 /// What parts bodies that overlap so deep [m].
-std::string remedy(double depth, const NamedSurface& one, const NamedSurface& other) {
+std::string remedy(double depth, const NamedSurface& one, const NamedSurface& other,
+                   const std::string& where) {
   std::string text = "Move a body with initial.position until they are apart";
   if (depth <= facet_size(start(one.geometry), start(other.geometry)))
-    text += ", or give one of them initial: {adjust: true}";
+    text += adjusting(where);
   if (depth <= deepest_fit(one, other))
     text += ", or, where a fit is meant, initial: {interference: {over: TIME}}";
   for (const NamedSurface* side : {&one, &other})
@@ -126,7 +134,7 @@ void check_overlap(const NamedSurface& one, const NamedSurface& other,
                                  told.front().depth, words(told.front(), sides));
   for (std::size_t i = 1; i < told.size(); ++i)
     text += fmt::format(", and {} by {:.3g} m", words(told[i], sides), told[i].depth);
-  throw InputError(text, where, remedy(told.front().depth, one, other));
+  throw InputError(text, where, remedy(told.front().depth, one, other, where));
 }
 
 /// Rows will be of the nodes of the surface that has edges, divided as finely as the finder's
@@ -160,9 +168,9 @@ void check_averages(const NamedSurface& one, const NamedSurface& other, const st
                                "overlaps {} by {:.3g} m",
                                one.name, other.name, overlap),
                    where,
-                   fmt::format("Move a body with initial.position by {:.3g} m more, make the mesh "
-                               "finer, or give one of them initial: {{adjust: true}}.",
-                               overlap));
+                   fmt::format("Move a body with initial.position by {:.3g} m more, or make the mesh "
+                               "finer{}.",
+                               overlap, adjusting(where)));
 }
 
 /// What makes one of two sides useless, whatever the other is.

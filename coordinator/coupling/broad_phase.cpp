@@ -6,10 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "base/one_each.hpp"
 #include "coordinator/coupling/exchange.hpp"
 #include "coordinator/coupling/parts_of_ports.hpp"
 #include "coordinator/coupling/row_margin.hpp"
 #include "coordinator/coupling/tied_wholes.hpp"
+#include "surface/inside.hpp"
 
 namespace abut {
 
@@ -91,7 +93,11 @@ BroadPhase::BroadPhase(const Bodies& bodies, std::span<const Joint> joined) {
       const bool touches = surface.dim > 1 && !surface.facets.empty() && !tied(b, p) && !parts[p];
       place_[b].push_back(touches ? static_cast<int>(ports_.size()) : -1);
       if (!touches) continue;
-      ports_.push_back({{b, static_cast<int>(p)}, std::isinf(body.mass), rank[b], whole[b]});
+      ports_.push_back({{b, static_cast<int>(p)},
+                        std::isinf(body.mass),
+                        rank[b],
+                        whole[b],
+                        is_closed(posed(surface)) ? 0.0 : surface.spacing});
       sides.push_back(ports_.back().side);
     }
   }
@@ -105,10 +111,10 @@ void BroadPhase::join(const PortPair& pair) {
   joined_.insert(std::minmax(a, b));
 }
 
-std::vector<PortPair> BroadPhase::overlapping() const {
+std::vector<BroadPhase::Places> BroadPhase::boxes_that_overlap() const {
   std::size_t axis = 0;
   const std::vector<int> order = sorted_along(boxes_, axis);
-  std::vector<std::pair<int, int>> found;
+  std::vector<Places> found;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Box& box = boxes_[order[i]];
     const Surface& one = ports_[order[i]];
@@ -120,7 +126,13 @@ std::vector<PortPair> BroadPhase::overlapping() const {
       if (overlap(box, other)) found.push_back(std::minmax(order[i], order[k]));
     }
   }
-  std::ranges::sort(found);
+  return found;
+}
+
+std::vector<PortPair> BroadPhase::overlapping() const {
+  std::vector<Places> found = boxes_that_overlap();
+  found.insert(found.end(), passed_.begin(), passed_.end());
+  keep_one_each(found);
   std::vector<PortPair> pairs;
   for (const auto& [a, b] : found) {
     if (joined_.contains({a, b})) continue;
@@ -132,11 +144,21 @@ std::vector<PortPair> BroadPhase::overlapping() const {
 }
 
 std::vector<PortPair> BroadPhase::near_at_start(const Bodies& bodies) {
-  boxes_.clear();
-  for (const Surface& port : ports_) {
-    const PortGeometry& surface = bodies.port(port.side).geometry;
-    boxes_.push_back(box_of(surface.points, surface.points, index(surface.dim), 0.5 * margin_));
-  }
+  const auto make_boxes = [&](double widths) {
+    boxes_.clear();
+    for (const Surface& port : ports_) {
+      const PortGeometry& surface = bodies.port(port.side).geometry;
+      boxes_.push_back(box_of(surface.points, surface.points, index(surface.dim),
+                              0.5 * margin_ + widths * port.open));
+    }
+  };
+  make_boxes(1.0);
+  passed_ = boxes_that_overlap();
+  make_boxes(0.0);
+  const std::vector<Places> touching = boxes_that_overlap();
+  std::erase_if(passed_, [&touching](const Places& pair) {
+    return std::ranges::find(touching, pair) != touching.end();
+  });
   return overlapping();
 }
 

@@ -30,7 +30,9 @@ class BroadPhase {
 
   // Pairs are told in the order of their ports.
 
-  /// Whose boxes overlap in the reference configuration.
+  /// Whose boxes overlap in the reference configuration, those of surfaces that are not closed larger
+  /// by the width of a facet: flat ones have boxes without height, and may have passed each other
+  /// there. `near` tells of all of these, whatever their boxes are then.
   std::vector<PortPair> near_at_start(const Bodies& bodies);
   /// That may come together within `time` [s] from the end of the last replies.
   std::vector<PortPair> near(const Bodies& bodies, double time);
@@ -45,14 +47,18 @@ class BroadPhase {
     bool stands = false;  // nothing that touches it moves it
     int rank = 0;         // of its body in the order of sweeps
     int whole = 0;        // of what ties hold together
+    double open = 0.0;    // [m] width of a facet, where it is not closed
   };
+  using Places = std::pair<int, int>;  // in ports_, ascending
+  std::vector<Places> boxes_that_overlap() const;
   std::vector<PortPair> overlapping() const;
 
   std::vector<Surface> ports_;
-  std::set<std::pair<int, int>> joined_;  // of ports_, ascending
+  std::set<Places> joined_;
   std::vector<std::vector<int>> place_;   // in ports_, by body and port; -1: no surface
   double margin_ = 0.0;                   // [m] by which rows of any pair may press early
   std::vector<Box> boxes_;
+  std::vector<Places> passed_;  // of the start, by the width of a facet alone
 };
 
 }  // namespace abut

@@ -47,6 +47,37 @@ struct PassiveLedger {
     const Pair pair{one, its_port, other, its_other}, turned{other, its_other, one, its_port};
     return std::min(pair, turned);
   }
+  /// Both stages' together.
+  PassiveLedger after(const PassiveLedger& earlier) const {
+    PassiveLedger all = *this;
+    for (double PassiveLedger::* sum :
+         {&PassiveLedger::normal, &PassiveLedger::impacts, &PassiveLedger::friction,
+          &PassiveLedger::push_out, &PassiveLedger::damped, &PassiveLedger::repaid,
+          &PassiveLedger::switched})
+      all.*sum += earlier.*sum;
+    for (std::int64_t PassiveLedger::* count :
+         {&PassiveLedger::steps, &PassiveLedger::refused, &PassiveLedger::windows,
+          &PassiveLedger::rigid, &PassiveLedger::halved_windows, &PassiveLedger::rigid_windows,
+          &PassiveLedger::unanswered, &PassiveLedger::unsettled})
+      all.*count += earlier.*count;
+    for (std::vector<double> PassiveLedger::* of :
+         {&PassiveLedger::lost, &PassiveLedger::taken, &PassiveLedger::refused_by})
+      for (std::size_t b = 0; b < (earlier.*of).size(); ++b)
+        add(all.*of, static_cast<int>(b), (earlier.*of)[b]);
+    for (const auto& [pair, heat] : earlier.rubbed) all.rubbed[pair] += heat;
+    all.deepest = std::max(deepest, earlier.deepest);
+    all.unbalanced = std::max(unbalanced, earlier.unbalanced);
+    if (all.shortest_step == 0.0 || (earlier.shortest_step > 0.0 && earlier.shortest_step < shortest_step))
+      all.shortest_step = earlier.shortest_step;
+    return all;
+  }
+  /// What bodies without inertia give up is no energy of motion.
+  void leave_out_energies() {
+    normal = impacts = friction = push_out = damped = repaid = switched = 0.0;
+    lost.clear();
+    taken.clear();
+    rubbed.clear();
+  }
   void state(Archive& archive) {
     std::vector<std::pair<Pair, double>> pairs(rubbed.begin(), rubbed.end());
     list(archive, "rubbed", pairs, [](Archive& a, auto& each) {

@@ -95,6 +95,9 @@ void PassiveWay::make() {
 
 std::optional<Failed> PassiveWay::enter(double time, bool unanswered) {
   if (unanswered) ++ledger_.unanswered;
+  // Anew each time: a run that was resumed since bodies went so last knows nothing of that.
+  step_.reset();
+  near_.reset();
   make();
   for (int b = 0; b < bodies_.count(); ++b) {
     const double lost = bodies_.ask_passively(b).enter();
@@ -317,9 +320,21 @@ void PassiveWay::rejoin(double lost) {
     if (tie.tie != nullptr) tie.tie->rejoin();
 }
 
+void PassiveWay::totals(Archive& archive) {
+  if (archive.writing()) were_statics_ = statics();
+  whole(archive, "statics", were_statics_);
+  earlier_.state(archive);
+  ledger_.state(archive);
+}
+
+void PassiveWay::begin_stage() {
+  earlier_ = of_all_stages();
+  if (were_statics_ && !statics()) earlier_.leave_out_energies();
+  ledger_ = {};
+}
+
 void PassiveWay::state(Archive& archive) {
   whole(archive, "active", active_);
-  ledger_.state(archive);
   if (!active_) return;
   make();
   whole(archive, "level", level_);

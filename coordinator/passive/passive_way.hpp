@@ -37,6 +37,7 @@ class PassiveWay {
   /// [M.154].
   bool statics() const;
   const PassiveLedger& ledger() const { return ledger_; }
+  PassiveLedger of_all_stages() const { return ledger_.after(earlier_); }
 
   /// The bodies stand at a time at which they may be saved. `unanswered`: the accurate method was
   /// tried and had no answer.
@@ -65,6 +66,10 @@ class PassiveWay {
   double rubbed(const Joint& joint) const;
 
   void state(Archive& archive);
+  /// What was given up so far, in this stage and in those before.
+  void totals(Archive& archive);
+  /// The totals are those of the stage before.
+  void begin_stage();
 
  private:
   std::string find_hindrance() const;
@@ -81,7 +86,8 @@ class PassiveWay {
   std::string hindrance_;
   bool active_ = false, quiet_ = true;
   bool halved_ = false;  // a step of the window was shorter than the nominal one
-  PassiveLedger ledger_;
+  PassiveLedger ledger_, earlier_;  // of the stage; of those before
+  bool were_statics_ = false;       // which had no inertia
   double window_;                            // [s] of the scene
   double nominal_ = 0.0;                     // [s] the longest step
   int level_ = 0;                            // steps are nominal / 2^level

@@ -88,7 +88,10 @@ std::string predicted(const Scene& scene, const Document& document, const Estima
   const auto began = std::chrono::steady_clock::now();
   const Placement placement = place(scene, document, false, stop);
   const std::chrono::duration<double> startup = std::chrono::steady_clock::now() - began;
-  const ProbedRun probe = probe_run(scene, placement.pointers(), seconds, stop, interrupted);
+  const std::vector<const Description*> bodies = placement.descriptions();
+  const ContactOutlook outlook = outlook_of(scene, document, estimate, bodies);
+  const ProbedRun probe = probe_run(scene, placement.pointers(), seconds, stop, interrupted,
+                                    outlook.possible && !outlook.tied);
   if (interrupt_exit_code() != 0) return "";
   double memory = coordinator_mib + std::max(0.0, memory_of("self", "VmRSS") - before);
   const std::vector<std::int64_t> processes = placement.launch->process_ids();
@@ -96,9 +99,8 @@ std::string predicted(const Scene& scene, const Document& document, const Estima
   if (!probe.failure.empty())
     return fmt::format("  time       the run fails at {:.4g} {}: {}\n", probe.reached,
                        document.units().word("s"), probe.failure);
-  const std::vector<const Description*> bodies = placement.descriptions();
-  const std::optional<Prediction> prediction = predict(
-      probe, scene.time.end, startup.count(), outlook_of(scene, document, estimate, bodies));
+  const std::optional<Prediction> prediction =
+      predict(probe, scene.time.end, startup.count(), outlook);
   if (!prediction)
     return fmt::format(
         "  time       not predicted: no window has ended in {:.2g} s; give a longer --probe\n",
@@ -120,6 +122,39 @@ std::string prediction_text(const Scene& scene, const Document& document, const 
   }
 }
 
+/// Builds the bodies of a scene, or of one of its stages, here, and prints what the run will be.
+Estimate print_outlook(const std::string& what, const Scene& scene, const Document& document,
+                       bool verbose) {
+  Placement here{nullptr, {}};
+  Estimate estimate;
+  in_units_of(scene, [&] {
+    here.bodies = launch_local(scene, document);
+    estimate = validate_all(scene, document, here, true).estimate;
+  });
+  check_nothing_before(scene);
+  const std::vector<const Description*> bodies = here.descriptions();
+  const std::vector<std::optional<BodyFacts>> facts = local_facts(scene, document);
+  fmt::print("{}: valid\n{}", what,
+             quantities_in(declared_units(scene.units), to_text(estimate, verbose)));
+  fmt::print("{}", in_words_of(document.units(), body_table(bodies, facts)));
+  for (const InputError& doubt : unit_doubts(bodies, facts, document))
+    fmt::print("warning: {}\n", doubt.what());
+  return estimate;
+}
+
+/// What follows the scene; true: something does.
+bool print_stages(const Document& document, bool verbose) {
+  std::optional<Document> stage = document.next_stage();
+  if (!stage) return false;
+  for (; stage; stage = stage->next_stage()) {
+    const Scene scene = read_scene(*stage);
+    print_outlook(fmt::format("{}, from {:.6g} {}", stage->name(), scene.time.begin,
+                              document.units().word("s")),
+                  scene, *stage, verbose);
+  }
+  return true;
+}
+
 }  // namespace
 
 int check_verb(const CheckCommand& command) {
@@ -127,25 +162,14 @@ int check_verb(const CheckCommand& command) {
   const Scene scene = read_all_keys(document);
   check_processes(scene, document);
   check_programs(scene, document);
-  Estimate estimate;
-  {
-    Placement here{nullptr, {}};
-    in_units_of(scene, [&] {
-      here.bodies = launch_local(scene, document);
-      estimate = validate_all(scene, document, here, true).estimate;
-    });
-    check_nothing_before(scene);
-    const std::vector<const Description*> bodies = here.descriptions();
-    const std::vector<std::optional<BodyFacts>> facts = local_facts(scene, document);
-    fmt::print("{}: valid\n{}", command.scene,
-               quantities_in(declared_units(scene.units), to_text(estimate, command.verbose)));
-    fmt::print("{}", in_words_of(document.units(), body_table(bodies, facts)));
-    for (const InputError& doubt : unit_doubts(bodies, facts, document))
-      fmt::print("warning: {}\n", doubt.what());
-  }
+  const Estimate estimate = print_outlook(command.scene, scene, document, command.verbose);
+  const bool staged = print_stages(document, command.verbose);
   if (command.probe <= 0.0) return 0;
   if (isatty(STDOUT_FILENO) == 1) std::fflush(stdout);  // the probe takes a moment
   fmt::print("{}", prediction_text(scene, document, estimate, command.probe));
+  if (staged)
+    fmt::print("  stages     time and memory are those of the first one: the others begin where it "
+               "ends, and are not tried\n");
   return interrupt_exit_code();
 }
 

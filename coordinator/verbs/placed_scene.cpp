@@ -155,4 +155,14 @@ Validated validate_all(const Scene& scene, const Document& document, const Place
   return valid;
 }
 
+void validate_stages(const Document& document) {
+  for (std::optional<Document> stage = document.next_stage(); stage; stage = stage->next_stage()) {
+    const Scene scene = read_scene(*stage);
+    in_units_of(scene, [&] {
+      Placement here{nullptr, launch_local(scene, *stage)};
+      validate_all(scene, *stage, here, true);
+    });
+  }
+}
+
 }  // namespace abut

@@ -66,4 +66,8 @@ void in_units_of(const Scene& scene, const std::function<void()>& set_up);
 Validated validate_all(const Scene& scene, const Document& document, const Placement& placement,
                        bool processes);
 
+/// The same of the stages that follow a scene, with bodies that are built here for that, where they
+/// stand at the scene's begin.
+void validate_stages(const Document& document);
+
 }  // namespace abut

@@ -127,6 +127,11 @@ int report(const RunPlan& plan, const RunOptions& options, const fs::path& direc
     if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", directory.string());
     if (kept && status != "completed")
       fmt::print("go on  abut resume {}, from {:.6g} s\n", directory.string(), *kept);
+    if (!kept && status == "interrupted")
+      fmt::print(
+          "go on  nothing is kept to go on from: the window under way had not ended after {} s "
+          "or at a second signal; give --grace more, or the scene output: {{checkpoint: ...}}\n",
+          options.grace);
   }
   return pass ? 0 : exit_expectation;
 }
@@ -164,8 +169,6 @@ TextFile::Opening opening_of(const Checkpoint* from, std::string_view kept_as) {
   const bool there = from != nullptr && from->record(kept_as) != nullptr;
   return there ? TextFile::Opening::goes_on : TextFile::Opening::made;
 }
-
-constexpr unsigned patience = 3;  // [s] for the window under way, where a run is to end
 
 /// What a stage has come to.
 struct StageEnd {
@@ -212,7 +215,7 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
       {directory, scene.output.checkpoint, more, resolved_text(scene, plan.document),
        swapped_bodies(plan.document)},
       pointers, observers, clock);
-  grant_patience(patience);
+  grant_patience(options.grace, !options.quiet);
   const RunEnd end = conduct(controller, checkpoints, from, directory);
   // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.
   if (placement.launch && end.status != "interrupted") placement.launch->finish();

@@ -67,8 +67,8 @@ void check_end(const Checkpoint& from, const Scene& scene, const std::string& di
 }  // namespace
 
 int resume_verb(const ResumeCommand& command) {
-  const RunOptions options{command.local, command.quiet,       command.insecure,
-                           command.trace, SystemClock().now(), command.awaited};
+  const RunOptions options{command.local, command.quiet,       command.insecure, command.trace,
+                           command.grace, SystemClock().now(), command.awaited};
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
   const Interrupts interrupts = watch_for_interrupts();
   RunDirectory held = RunDirectory::of_run(command.directory);

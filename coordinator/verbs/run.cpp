@@ -17,8 +17,8 @@ namespace abut {
 namespace fs = std::filesystem;
 
 int run_verb(const RunCommand& command) {
-  const RunOptions options{command.local, command.quiet,       command.insecure,
-                           command.trace, SystemClock().now(), command.awaited};
+  const RunOptions options{command.local, command.quiet,       command.insecure, command.trace,
+                           command.grace, SystemClock().now(), command.awaited};
   start_log("abut", command.quiet ? LogLevel::error : LogLevel::info);
   const Interrupts interrupts = watch_for_interrupts();
   Document document = Document::load(command.scene, command.overrides);
@@ -29,6 +29,7 @@ int run_verb(const RunCommand& command) {
   std::optional<RunPlan> plan;
   try {
     plan = plan_run(std::move(document), options, interrupts);
+    validate_stages(plan->document);
     check_nothing_before(plan->scene);
     for (const Description* body : plan->placement.descriptions())
       log_info(fmt::format("{}: {}", body->name,

@@ -312,7 +312,9 @@ TEST(TiedContact, WhatSticksDoesNotCreepWithForcesOfJoints) {
           lost /= up.largest;
           EXPECT_GT(lost, 0.0);
           EXPECT_LT(lost, 0.012);
-          if (before > 0.0) EXPECT_LT(lost, 0.7 * before);
+          if (before > 0.0) {
+            EXPECT_LT(lost, 0.7 * before);
+          }
           before = lost;
         }
       }

@@ -32,7 +32,7 @@ LONG = ["--set", "time={begin: 0.0, end: 1.0, window: 1.0e-3}",
 DEADLINE = 1.0  # [s] of the scenes here
 # To end processes: 0.5 s to SIGKILL, and what a loaded machine takes on top.
 ENDING = 3.0
-PATIENCE = 3.0  # [s] that a run has for its window when it is asked to end
+PATIENCE = 2.0  # [s] that a run has for its window when it is asked to end: --grace of this file
 
 
 def limit(what: int, count: int):
@@ -53,7 +53,8 @@ class FaultTest(SystemTest):
                               encoding="utf-8")
 
     def run_in_background(self, *arguments: object, **options):
-        return self.start(ABUT, "run", self.scene, "--out", self.out, *arguments, **options)
+        return self.start(ABUT, "run", self.scene, "--out", self.out, "--grace", str(int(PATIENCE)),
+                          *arguments, **options)
 
     def wait_for_windows(self):
         """Until the run has come to its first contact, which the log of events tells."""
@@ -275,6 +276,10 @@ class Endings(FaultTest):
                         self.assert_whole(self.out, rows=1)
                         kinds = {event["kind"] for event in self.events()}
                         self.assertNotIn("failure", kinds)
+                        if sent != signal.SIGPIPE:  # then nobody reads
+                            self.assertIn("once more: ends now", result.stderr)
+                        if sent != signal.SIGPIPE:
+                            self.assertRegex(result.stdout, r"go on  (nothing is kept|abut resume)")
 
     def test_connected_solvers_are_told_of_an_interrupted_run(self):
         endpoint = f"tcp://127.0.0.1:{free_port()}"
