@@ -38,7 +38,8 @@ struct PassiveReply {
   // [1/kg] (values, values), values = pressed points x dim, of all ports in their order:
   // what an impulse on one value adds to another one's mean velocity over the step, which is its
   // displacement over its length. Symmetric, positive semidefinite; of a body that is not linear
-  // that of a tangent of the step, made definite.
+  // that of a tangent of the step, made definite. Or (values), where that would be too large: the
+  // diagonal of one that is nowhere smaller, which takes more steps' trials.
   std::vector<double> compliance;
   BodyRecord record;  // at the step's end; energy in the form that the midpoint rule conserves
   // [m] by which a point of a port leaves the straight way at most: of bodies that turn

@@ -318,8 +318,10 @@ Controller::Judgement Controller::judge_ways(const TimeWindow& window) {
   if (guard_.refuses(bodies_.responses(), bodies_.struck())) return gains;
   if (guard_.loses(bodies_.responses(), lost_to_contact(joints_, bodies_), bodies_.struck()))
     return {Judgement::Verdict::fail, window.end, "contact would take energy"};
-  if (std::string crossed = crossing_.look(); !crossed.empty())
+  if (std::string crossed = crossing_.look(); !crossed.empty()) {
+    if (passive_.statics() && halvings_ < most_halvings()) return halved(window, crossed);
     return {Judgement::Verdict::fail, window.end, std::move(crossed)};
+  }
   return repay() ? Judgement() : gains;
 }
 
@@ -338,13 +340,15 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
     narrator_.warning(window.begin, "", text + "; accepted as the scene says");
     return {};
   }
-  if (halvings_ < most_halvings()) {
-    ++halvings_;
-    narrator_.warning(window.begin, "", text + "; the window is halved");
-    return {Verdict::cut, window.begin + 0.5 * window.length(), {}};
-  }
+  if (halvings_ < most_halvings()) return halved(window, text);
   if (attempt_.failed) return {Verdict::fail, window.end, text};
   return {Verdict::fail, window.end, text + "; " + sweeps_remedy(descriptions_of(bodies_))};
+}
+
+Controller::Judgement Controller::halved(const TimeWindow& window, const std::string& why) {
+  ++halvings_;
+  narrator_.warning(window.begin, "", why + "; the window is halved");
+  return {Judgement::Verdict::cut, window.begin + 0.5 * window.length(), {}};
 }
 
 void Controller::accept(const TimeWindow& window) {

@@ -84,12 +84,9 @@ class Controller {
     std::string trouble(double tolerance) const;  // in words
   };
   struct Judgement {
-    enum class Verdict {
-      accept,
-      again,  // the same window: joints have changed
-      cut,    // the same window up to an earlier end
-      fail,   // the run
-    };
+    // again: the same window, as joints have changed; cut: the same up to an earlier end; fail: the
+    // run
+    enum class Verdict { accept, again, cut, fail };
     Verdict verdict = Verdict::accept;
     double end = 0.0;    // [s] of a window that is cut
     std::string reason;  // of a failure
@@ -123,6 +120,7 @@ class Controller {
   Judgement judge_ways(const TimeWindow& window);
   std::optional<Failed> made_by_themselves(const TimeWindow& window) const;
   Judgement judge_trouble(const TimeWindow& window);
+  Judgement halved(const TimeWindow& window, const std::string& why);
   Judgement judge_springs(const TimeWindow& window, double before);
   void accept(const TimeWindow& window);
   void end_window(const TimeWindow& window, EnergyGuard::Verdict energy);

@@ -164,6 +164,22 @@ std::int64_t count_of(double value) {
   return count_within(value, std::int64_t{0}, most);
 }
 
+/// Of surfaces that may touch: ends of bars that do are few, and known.
+std::string why_not_passive(const Scene& scene, std::span<const Description* const> known) {
+  const auto is_contact = [](const auto& entry) { return !entry.second.tied; };
+  const bool touch = scene.everything() != nullptr ||
+                     std::any_of(scene.interfaces.begin(), scene.interfaces.end(), is_contact);
+  const bool wants = scene.schwarz.on_nonconvergence == OnNonconvergence::passive;
+  if (!touch || !wants || known.empty() || known.front()->dim == 1) return {};
+  for (const auto& [name, interface] : scene.interfaces)
+    if (interface.tied && (interface.tied->overlap || is_dashpot(interface.transmission)))
+      return fmt::format("bodies that '{}' {} have no passive form", name,
+                         interface.tied->overlap ? "lets overlap" : "joins by dashpots");
+  for (const Description* body : known)
+    if (!body->can.passive) return fmt::format("body '{}' has no passive form", body->name);
+  return {};
+}
+
 }  // namespace
 
 Estimate estimate(const Scene& scene, std::span<const Description* const> bodies,
@@ -183,6 +199,7 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
         {body->name, body->model, true, body->dofs, count_of(steps), memory_mib(*body)});
     known.push_back(body);
   }
+  e.not_passive = why_not_passive(scene, known);
   const std::int64_t count = static_cast<std::int64_t>(bodies.size());
   std::int64_t joints = static_cast<std::int64_t>(scene.interfaces.size());
   if (scene.everything() != nullptr) joints += count;  // pairs that touch, about
@@ -295,6 +312,10 @@ std::string to_text(const Estimate& e, bool verbose) {
                           k.interface, k.rows_mib);
   }
   for (const Estimate::Ties& ties : e.ties) text += text_of(ties);
+  if (!e.not_passive.empty())
+    text += fmt::format("  passively  not: {}, so a window that the accurate method cannot take ends "
+                        "the run\n",
+                        e.not_passive);
   if (!e.in_use.empty()) text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
   if (verbose) text += fmt::format("  unused     {}\n", fmt::join(e.not_built, ", "));
   return text;

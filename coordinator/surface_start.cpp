@@ -95,9 +95,9 @@ std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurf
   return places;
 }
 
-/// Of contact between everything (`where` is empty) nodes are not moved.
+/// Of contact between everything nodes are not moved.
 std::string adjusting(const std::string& where) {
-  return where.empty() ? ", or write the pair under interfaces and give one of them initial: "
+  return !where.starts_with("interfaces.") ? ", or write the pair under interfaces and give one of them initial: "
                          "{adjust: true}"
                        : ", or give one of them initial: {adjust: true}";
 }

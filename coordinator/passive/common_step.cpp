@@ -170,10 +170,8 @@ std::string CommonStep::driven() const {
     for (std::size_t i = 0; i < 4; ++i) {
       const std::int32_t point = row.features.points[i];
       if (!row.counts(i) || points_.slot(point) < 0) continue;
-      const Eigen::MatrixXd& answers = points_.compliance(points_.owner(point));
-      const int dim = surfaces_.skin().dim, slot = points_.slot(point);
-      if (answers.rows() < slot + dim) return true;  // not told
-      if (answers.diagonal().segment(slot, dim).maxCoeff() > 0.0) return true;
+      const std::optional<double> own = points_.of_its_own(point);
+      if (!own || *own > 0.0) return true;  // not told, or it gives way
     }
     return false;
   };
@@ -432,7 +430,12 @@ void CommonStep::take_answer(int owner, double softer) {
   if (!ties_.joined(owner)) {
     if (!points_.any(owner)) return;
     const std::vector<double>& told = tried_[index(owner)].compliance;
-    const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(told.size())));
+    const std::size_t values = points_.values(owner).size() * index(surfaces_.skin().dim);
+    if (told.size() == values && values > 1)
+      return points_.take_bound(
+          owner, Eigen::Map<const Eigen::VectorXd>(told.data(), static_cast<Eigen::Index>(values)),
+          velocities_);
+    const auto size = static_cast<Eigen::Index>(values);
     points_.take(owner, Eigen::Map<const Eigen::MatrixXd>(told.data(), size, size), softer,
                  velocities_);
     return;

@@ -59,13 +59,33 @@ std::vector<std::array<std::int32_t, 3>> PressedPoints::values(int owner) const 
 void PressedPoints::take(int owner, const Eigen::Ref<const Eigen::MatrixXd>& compliance,
                          double softer, std::span<const Eigen::Vector3d> velocities) {
   Body& to = bodies_[index(owner)];
-  const int dim = surfaces_.skin().dim;
-  const Eigen::Index n = static_cast<Eigen::Index>(to.slots.size()) * dim;
+  to.bound.resize(0);
   to.compliance = softer * compliance;
-  to.velocity.resize(n);
+  take_velocities(to, velocities);
+}
+
+void PressedPoints::take_bound(int owner, const Eigen::Ref<const Eigen::VectorXd>& diagonal,
+                               std::span<const Eigen::Vector3d> velocities) {
+  Body& to = bodies_[index(owner)];
+  to.compliance.resize(0, 0);
+  to.bound = diagonal;
+  take_velocities(to, velocities);
+}
+
+void PressedPoints::take_velocities(Body& to, std::span<const Eigen::Vector3d> velocities) const {
+  const int dim = surfaces_.skin().dim;
+  to.velocity.resize(static_cast<Eigen::Index>(to.slots.size()) * dim);
   for (std::size_t k = 0; k < to.slots.size(); ++k)
     for (int i = 0; i < dim; ++i)
       to.velocity(static_cast<Eigen::Index>(k) * dim + i) = velocities[to.slots[k]](i);
+}
+
+std::optional<double> PressedPoints::of_its_own(std::int32_t point) const {
+  const Body& body = bodies_[index(owner(point))];
+  const int dim = surfaces_.skin().dim, first = slot(point);
+  if (body.bound.size() >= first + dim) return body.bound.segment(first, dim).maxCoeff();
+  if (body.compliance.rows() < first + dim) return std::nullopt;
+  return body.compliance.diagonal().segment(first, dim).maxCoeff();
 }
 
 }  // namespace abut

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ class PressedPoints {
   /// under the impulses that were tried.
   void take(int owner, const Eigen::Ref<const Eigen::MatrixXd>& compliance, double softer,
             std::span<const Eigen::Vector3d> velocities);
+  /// The same where the diagonal of one that is nowhere smaller was told.
+  void take_bound(int owner, const Eigen::Ref<const Eigen::VectorXd>& diagonal,
+                  std::span<const Eigen::Vector3d> velocities);
   /// Body, port and point of an owner's values.
   std::vector<std::array<std::int32_t, 3>> values(int owner) const;
 
@@ -44,17 +48,24 @@ class PressedPoints {
   int slot(std::int32_t point) const { return slots_.empty() ? -1 : slots_[point]; }
   Eigen::VectorXd& velocity(int body) { return bodies_[index(body)].velocity; }
   const Eigen::VectorXd& velocity(int body) const { return bodies_[index(body)].velocity; }
+  /// Without entries where bound() has some.
   const Eigen::MatrixXd& compliance(int body) const { return bodies_[index(body)].compliance; }
+  const Eigen::VectorXd& bound(int body) const { return bodies_[index(body)].bound; }
+  /// [1/kg] of a point itself, at most along one axis; nothing: its body has not told of it.
+  std::optional<double> of_its_own(std::int32_t point) const;
 
  private:
   struct Body {
     std::vector<std::int32_t> slots;  // points of the skin, in the order of values
     Eigen::MatrixXd compliance;       // [1/kg] (values, values)
+    Eigen::VectorXd bound;            // [1/kg] (values), in its place
     Eigen::VectorXd velocity;         // [m/s] (values)
   };
 
   const TouchingSurfaces& surfaces_;
   std::vector<int> owners_;
+  void take_velocities(Body& to, std::span<const Eigen::Vector3d> velocities) const;
+
   std::vector<Body> bodies_;  // by owner
   std::vector<int> slots_;    // by point
 };

@@ -59,24 +59,50 @@ RowImpulses::Answer RowImpulses::answer_of(const DistanceRow& row) const {
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   for (const std::size_t s : {0u, 1u}) {
     if (answer.body[s] < 0) continue;
-    const Eigen::MatrixXd& compliance = points_.compliance(answer.body[s]);
-    for (int d = 0; d < directions; ++d) answer.change[index(d)][s].setZero(compliance.rows());
-    visit_pressed(row, answer.body[s], [&](int slot, std::size_t i) {
-      for (int d = 0; d < directions; ++d)
-        answer.change[index(d)][s].noalias() +=
-            compliance.middleCols(slot, dim_) * row.share_on(i, d).head(dim_);
-    });
-    visit_pressed(row, answer.body[s], [&](int slot, std::size_t i) {
-      for (int d = 0; d < directions; ++d)
-        for (int e = 0; e < directions; ++e)
-          own(e, d) += along(row.share_on(i, e), answer.change[index(d)][s], slot);
-    });
+    if (points_.bound(answer.body[s]).size() > 0)
+      find_bounds(row, directions, s, answer, own);
+    else
+      find_changes(row, directions, s, answer, own);
   }
   answer.normal = own(0, 0);
   const double trace = own(1, 1) + own(2, 2);
   const double apart = std::hypot(own(1, 1) - own(2, 2), own(1, 2) + own(2, 1));
   answer.tangential = dim_ == 2 ? own(1, 1) : 0.5 * (trace + apart);
   return answer;
+}
+
+/// By the whole compliance of a side's body.
+void RowImpulses::find_changes(const DistanceRow& row, int directions, std::size_t side,
+                               Answer& answer, Eigen::Matrix3d& own) const {
+  const int body = answer.body[side];
+  const Eigen::MatrixXd& compliance = points_.compliance(body);
+  for (int d = 0; d < directions; ++d)
+    answer.change[index(d)][side].all.setZero(compliance.rows());
+  visit_pressed(row, body, [&](int slot, std::size_t i) {
+    for (int d = 0; d < directions; ++d)
+      answer.change[index(d)][side].all.noalias() +=
+          compliance.middleCols(slot, dim_) * row.share_on(i, d).head(dim_);
+  });
+  visit_pressed(row, body, [&](int slot, std::size_t i) {
+    for (int d = 0; d < directions; ++d)
+      for (int e = 0; e < directions; ++e)
+        own(e, d) += along(row.share_on(i, e), answer.change[index(d)][side].all, slot);
+  });
+}
+
+/// By a diagonal that bounds it.
+void RowImpulses::find_bounds(const DistanceRow& row, int directions, std::size_t side,
+                              Answer& answer, Eigen::Matrix3d& own) const {
+  const int body = answer.body[side];
+  const Eigen::VectorXd& bound = points_.bound(body);
+  visit_pressed(row, body, [&](int slot, std::size_t i) {
+    for (int d = 0; d < directions; ++d) {
+      Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+      moved.head(dim_) = bound.segment(slot, dim_).cwiseProduct(row.share_on(i, d).head(dim_));
+      answer.change[index(d)][side].some.emplace_back(slot, moved);
+      for (int e = 0; e < directions; ++e) own(e, d) += row.share_on(i, e).dot(moved);
+    }
+  });
 }
 
 /// Calls `see` with the first value and the place of each point of a row that is pressed on a
@@ -107,9 +133,14 @@ double RowImpulses::velocity(const DistanceRow& row, int direction) const {
 
 void RowImpulses::press(std::size_t row, int direction, double impulse) {
   const Answer& answer = answers_[row];
-  for (const std::size_t s : {0u, 1u})
-    if (answer.body[s] >= 0)
-      points_.velocity(answer.body[s]) += impulse * answer.change[index(direction)][s];
+  for (const std::size_t s : {0u, 1u}) {
+    if (answer.body[s] < 0) continue;
+    const Change& change = answer.change[index(direction)][s];
+    Eigen::VectorXd& velocity = points_.velocity(answer.body[s]);
+    if (change.all.size() > 0) velocity += impulse * change.all;
+    for (const auto& [slot, moved] : change.some)
+      velocity.segment(slot, dim_) += impulse * moved.head(dim_);
+  }
 }
 
 void RowImpulses::press_from(std::size_t row, double share) {

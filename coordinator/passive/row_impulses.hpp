@@ -41,15 +41,22 @@ class RowImpulses {
   double limit(double most);
 
  private:
+  struct Change {  // [1/kg] of a body's velocities by a unit impulse
+    Eigen::VectorXd all;                                // (values)
+    std::vector<std::pair<int, Eigen::Vector3d>> some;  // in its place: first value, of a point
+  };
   struct Answer {  // of one row
     std::array<int, 2> body = {-1, -1};
-    // [1/kg] (directions; sides; values of the body) change of its velocities by a unit impulse
-    std::array<std::array<Eigen::VectorXd, 2>, 3> change;
+    std::array<std::array<Change, 2>, 3> change;  // (directions; sides)
     double normal = 0.0, tangential = 0.0;  // [1/kg] of its own; the larger one of tangents
   };
 
   double along(const Eigen::Vector3d& direction, const Eigen::VectorXd& values, int slot) const;
   Answer answer_of(const DistanceRow& row) const;
+  void find_changes(const DistanceRow& row, int directions, std::size_t side, Answer& answer,
+                    Eigen::Matrix3d& own) const;
+  void find_bounds(const DistanceRow& row, int directions, std::size_t side, Answer& answer,
+                   Eigen::Matrix3d& own) const;
   template <class See>
   void visit_pressed(const DistanceRow& row, int body, const See& see) const;
   double velocity(const DistanceRow& row, int direction) const;

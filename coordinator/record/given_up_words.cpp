@@ -15,6 +15,9 @@ constexpr double nothing = 1.0e-6;
 /// Of what was given up: a cause of less is not told.
 constexpr double little = 1.0e-3;
 
+/// Of the forces that a step began with: bodies that leave more of them are not at rest.
+constexpr double trusted = 0.1;
+
 /// Where most of it is; -1: nowhere.
 int most_of(const std::vector<double>& values) {
   const auto most = std::ranges::max_element(values);
@@ -28,7 +31,10 @@ std::string share(std::int64_t part, std::int64_t all) {
 
 std::string windows_words(const GivenUp& up, std::int64_t windows) {
   std::string text = share(up.windows, windows) + " of the windows were solved passively";
-  if (up.statics) text += ", without inertia, by forces on nodes that are right to some hundredths";
+  const bool rests = up.unbalanced < trusted;
+  if (up.statics)
+    text += rests ? ", without inertia, by forces on nodes that are right to some hundredths"
+                  : ", without inertia, by forces on nodes that cannot be relied on";
   if (up.halved_windows > 0)
     text += fmt::format(", {} in shorter steps", share(up.halved_windows, windows));
   if (up.rigid_windows > 0)
@@ -63,16 +69,17 @@ std::string joules_words(const GivenUp& up) {
 
 std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
   if (up.statics) return {};
-  const bool lost_much = up.joules() > nothing * up.largest;
+  // What rigid bodies lose to each other is restitution: no mesh and no step changes it.
+  const bool lost_much = up.joules() - up.impacts > nothing * up.largest;
   if (!lost_much && up.rigid_windows == 0) return {};
   // Normal contact loses the motion of the nodes that meet, and so do changes of form: their mass
   // falls with the mesh. What steps gain and damping takes falls with the steps.
-  const double by_mesh = up.normal - up.push_out + up.switched;
+  const double normal = up.normal - up.impacts - up.push_out, by_mesh = normal + up.switched;
   if (by_mesh < up.damped) {
     const int body = most_of(up.refused_by.empty() ? up.taken : up.refused_by);
     if (body >= 0) return GivenUpRemedy{body, false};
   }
-  const int body = most_of(up.normal - up.push_out >= up.switched ? up.lost : up.taken);
+  const int body = most_of(normal >= up.switched ? up.lost : up.taken);
   if (body < 0) return {};
   return GivenUpRemedy{body, true};
 }
@@ -92,6 +99,8 @@ std::string given_up_words(const GivenUp& up, std::int64_t windows,
         "{}{:.3g} J of {:.3g} J that accurate windows had gained were taken back from the swinging "
         "of bodies",
         text.empty() ? "" : "; ", up.repaid, up.largest);
+  if (up.statics && up.windows > 0)
+    text += "; smaller windows and steps would leave more of them to the accurate method";
   if (up.deepest > 0.0)
     text += fmt::format("; surfaces were up to {:.3g} m behind each other", up.deepest);
   if (const std::optional<GivenUpRemedy> remedy = remedy_of(up)) {

@@ -444,4 +444,24 @@ bool MidpointStep::compliance(const Motion& motion, const PortMap& ports,
   return true;
 }
 
+void MidpointStep::bound(const Motion& motion, const PortMap& ports,
+                         const std::vector<std::size_t>& values, std::vector<double>& out) {
+  std::vector<double> unit(ports.values(), 0.0);
+  Vector lifted, picked, masses;
+  free_.pick(mass_, masses);
+  out.clear();
+  for (const std::size_t value : values) {
+    const auto [known, fresh] = by_mass_.try_emplace(value, 0.0);
+    if (fresh) {
+      unit[value] = 1.0;
+      lifted.setZero(mass_.size());
+      ports.lift(motion.q, unit, lifted);
+      unit[value] = 0.0;
+      free_.pick(lifted, picked);
+      known->second = 0.5 * picked.cwiseProduct(picked).cwiseQuotient(masses).sum();
+    }
+    out.push_back(known->second);
+  }
+}
+
 }  // namespace abut

@@ -56,6 +56,10 @@ class MidpointStep {
   /// False: there is none.
   [[nodiscard]] bool compliance(const Motion& motion, const PortMap& ports,
                                 const std::vector<std::size_t>& values, std::vector<double>& out);
+  /// The diagonal (values) of one that is nowhere smaller, of a body with inertia: what its mass alone
+  /// would answer.
+  void bound(const Motion& motion, const PortMap& ports, const std::vector<std::size_t>& values,
+             std::vector<double>& out);
 
  private:
   struct Factors {
@@ -109,6 +113,7 @@ class MidpointStep {
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
   FreeStep unpushed_;
   Factors own_;        // of a step under impulses
+  std::map<std::size_t, double> by_mass_;  // [1/kg] bound() of values of the ports
   Vector answer_;      // [m/s] (dofs) to the last impulse, from the state of the free step
   bool again_ = false, answered_ = false;
   bool balanced_ = false;  // as well as rounding allows, at the end of the last search
