@@ -24,7 +24,7 @@ namespace {
 /// Roundings of the energy of a strain of one, relative: below them a fall is no fall.
 constexpr double energy_rounding = 2.0e-15;
 /// Values of the ports: of more the whole compliance takes gigabytes, and a solution for each.
-constexpr std::size_t most_columns = 3000;
+constexpr std::size_t most_columns = 2400;
 
 /// Where velocities that have their angular momentum back have more energy than is allowed, and no
 /// deformation to pay it with: as much of the way from plain ones to them as the energy lasts for.
