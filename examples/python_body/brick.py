@@ -23,10 +23,10 @@ class Brick(Body):
 
     def __init__(self, keys):
         self.lengths, self.cells = np.array(keys["lengths"], float), tuple(keys["cells"])
-        self.corner, self.substep = np.array(keys["corner"], float), keys.positive("step")
-        modulus, ratio = keys.positive("youngs_modulus"), keys.number("poissons_ratio")
+        self.corner, self.substep = np.array(keys["corner"], float), keys.positive("step", "s")
+        modulus, ratio = keys.positive("youngs_modulus", "Pa"), keys.number("poissons_ratio")
         self.make_mesh()
-        self.mass = keys.positive("density") * float(np.prod(self.lengths))
+        self.mass = keys.positive("density", "kg/m^3") * float(np.prod(self.lengths))
         self.stiffness = self.stiffness_of_a_cell(modulus, ratio)
         self.masses = np.zeros((len(self.points), 1))
         np.add.at(self.masses, self.hexes.ravel(), self.mass / self.hexes.size)

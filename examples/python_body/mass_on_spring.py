@@ -13,8 +13,8 @@ class Mass(Body):
     model, state, conserves, linear = "mass on a spring, in Python", ("u", "v"), True, True
 
     def __init__(self, keys):
-        self.mass, self.stiffness = keys.positive("mass"), keys.positive("stiffness")
-        self.position, self.substep = keys.number("position"), keys.positive("step")
+        self.mass, self.stiffness = keys.positive("mass", "kg"), keys.positive("stiffness", "N/m")
+        self.position, self.substep = keys.number("position", "m"), keys.positive("step", "s")
         self.omega, self.u, self.v = sqrt(self.stiffness / self.mass), 0.0, 0.0
 
     def surface(self):

@@ -30,10 +30,10 @@ class Plate(Body):
     def __init__(self, keys):
         self.lengths, self.cells = np.array(keys["lengths"], float), keys["cells"]
         self.corner = np.array(keys["corner"], float)
-        self.substep = keys.positive("step")
-        modulus, ratio = keys.positive("youngs_modulus"), keys.number("poissons_ratio")
+        self.substep = keys.positive("step", "s")
+        modulus, ratio = keys.positive("youngs_modulus", "Pa"), keys.number("poissons_ratio")
         self.make_mesh()
-        self.mass = keys.positive("density") * float(np.prod(self.lengths))
+        self.mass = keys.positive("density", "kg/m^3") * float(np.prod(self.lengths))
         self.make_matrices(modulus, ratio)
         self.u = np.zeros_like(self.points)
         self.v = np.tile(np.array(keys["velocity"], float), (len(self.points), 1))

@@ -218,6 +218,8 @@ class Keys(PythonTest):
         for old, new, words in (
                 ("mass: 0.2", "mass: heavy", "mass: must be a number, but is 'heavy'"),
                 ("mass: 0.2", "mass: -0.2", "mass: must be positive, but is -0.2"),
+                ("mass: 0.2", "mass: 5 mm", "mass: must be a number, but is '5 mm'. "
+                 "Give one, as 0.5 or 0.5 kg."),
                 ("mass: 0.2", "mass: 0.2, colour: red",
                  "colour: is a key that this body does not read")):
             with self.subTest(words):
@@ -226,6 +228,18 @@ class Keys(PythonTest):
                 self.assert_error(run, 2, 20.0,
                                   f"{scene}:{line}: bodies.mass.model.external.{words}")
                 self.end(body)
+
+    def test_numbers_have_units(self):
+        """200 g and 0.8 kN/mm are the same numbers as 0.2 and 8e5: the run is the same to the bit."""
+        hashes = set()
+        for mass, stiffness in (("0.2", "8.0e+5"), ("200 g", "0.8 kN/mm"), ("0.2kg", "800 N/mm")):
+            scene = self.scene_with("mass: 0.2, stiffness: 8.0e+5",
+                                    f"mass: {mass}, stiffness: {stiffness}")
+            run, body = self.run_scene("--force", scene=scene), self.body()
+            self.succeed(self.end(run))
+            self.end(body)
+            hashes.add(self.summary()["state_hash"])
+        self.assertEqual(len(hashes), 1)
 
     def test_set_reaches_its_keys(self):
         for change, code, words in (("mass=0.4", 0, ""), ("mass=-1", 2, "must be positive"),

@@ -3,6 +3,7 @@
 import yaml
 
 from abut.errors import InputError
+from abut.units import in_si, system_of
 
 
 class Keys:
@@ -18,6 +19,8 @@ class Keys:
         if isinstance(node, yaml.MappingNode):
             self._lines = {key.value: key.start_mark.line + 1 for key, _ in node.value}
         values = yaml.safe_load(text)
+        declared = values.get("units") if isinstance(values, dict) else None
+        self._system = system_of(declared) if isinstance(declared, str) else None
         for name in self._path.split("."):
             values = values[name]
         self._values = dict(values or {})
@@ -58,14 +61,20 @@ class Keys:
     def get(self, name: str, otherwise):
         return self[name] if name in self else otherwise
 
-    def number(self, name: str) -> float:
+    def number(self, name: str, unit: str = "") -> float:
+        """The number in SI. With a unit, as "kg", the scene may give it as "200 g", and as a number
+        of the units that it declares."""
         value = self[name]
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise InputError(f"must be a number, but is {value!r}", self.where(name), "Give one.")
-        return float(value)
+        number = None
+        if not isinstance(value, bool) and isinstance(value, (int, float, str)):
+            number = in_si(value, unit, self._system)
+        if number is None:
+            raise InputError(f"must be a number, but is {value!r}", self.where(name),
+                             f"Give one, as 0.5 or 0.5 {unit}." if unit else "Give one.")
+        return number
 
-    def positive(self, name: str) -> float:
-        value = self.number(name)
+    def positive(self, name: str, unit: str = "") -> float:
+        value = self.number(name, unit)
         if not value > 0.0:
             raise InputError(f"must be positive, but is {value:g}", self.where(name),
                              "Give a number above 0.")
