@@ -34,8 +34,8 @@ class StageOrigin {
   StageOrigin(const YAML::Node& scene, std::string file);
   /// A stage that follows those that were added before.
   void add(std::string stage) { stages_.push_back(std::move(stage)); }
-  /// "scene.yaml:30: bodies.left (stage blow)": in the latest stage that has most of the path, or in
-  /// the scene itself. `shown`: the path, for people.
+  /// "scene.yaml:30: bodies.left (stage blow)": in the latest stage that has most of the path, or
+  /// in the scene itself. `shown`: the path, for people.
   std::string place_of(std::span<const std::string> path, std::string_view shown) const;
 
  private:

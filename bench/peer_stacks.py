@@ -24,7 +24,10 @@ LIMIT = 1.1  # exponent of the pairs: 1 is linear, and times of short runs scatt
 
 BRICK = """\
   brick_{row}_{column}:
-    model: {{fe: {{dimension: 3, mesh: {{box: {{lengths: [1, 1, 1], elements: [{cells}, {cells}, {cells}], element: tet4}}}}}}}}
+    model:
+      fe:
+        dimension: 3
+        mesh: {{box: {{lengths: [1, 1, 1], elements: [{cells}, {cells}, {cells}], element: tet4}}}}
     material: {{neo_hookean: {{youngs_modulus: 1.0e6, poissons_ratio: 0.4, density: 1000.0}}}}
     integrator: {{generalized_alpha: {{spectral_radius: 0.0, step: 0.025}}}}
     body_force: [0.0, -9.80665, 0.0]
@@ -34,7 +37,10 @@ BRICK = """\
 
 FLOOR = """\
   floor:
-    model: {{rigid_tool: {{dimension: 3, mesh: {{box: {{lengths: [{length}, 0.5, 4.0], elements: [1, 1, 1]}}}}}}}}
+    model:
+      rigid_tool:
+        dimension: 3
+        mesh: {{box: {{lengths: [{length}, 0.5, 4.0], elements: [1, 1, 1]}}}}
     initial: {{position: [-1.0, -0.5, -1.5]}}
     ports: {{skin: {{side: boundary}}}}
 contact: {{everything: {{}}}}

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/awaited.hpp"
-#include "coordinator/interrupt.hpp"
 
 namespace abut {
 
@@ -18,7 +17,7 @@ struct RunCommand {
   bool quiet = false;
   bool force = false;
   bool insecure = false;
-  unsigned grace = usual_grace;
+  unsigned grace = 10;  // [s] for the window under way, where a signal ends the run
   bool trace = false;
   std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };
@@ -30,7 +29,7 @@ struct ResumeCommand {
   bool local = false;
   bool quiet = false;
   bool insecure = false;
-  unsigned grace = usual_grace;
+  unsigned grace = 10;  // [s] for the window under way, where a signal ends the run
   bool trace = false;
   std::optional<Awaited> awaited;
 };

@@ -416,26 +416,9 @@ Joint make_pair(const Scene& scene, const PortPair& pair, const Bodies& bodies) 
   return joint;
 }
 
-/// Nodes are moved onto partners that a body's specification knows: those of interfaces.
-void refuse_adjusted(const Scene& scene) {
-  for (const auto& [name, body] : scene.bodies) {
-    const auto names_it = [&name](const auto& interface) {
-      return !interface.second.tied && std::ranges::any_of(interface.second.sides, [&](auto& side) {
-        return split_port(side).body == name;
-      });
-    };
-    if (!body.adjusts || std::ranges::any_of(scene.interfaces, names_it)) continue;
-    throw InputError("has no effect: nodes are moved out of surfaces that interfaces name, and "
-                     "contact.everything names none",
-                     "bodies." + name + ".initial.adjust",
-                     "Write the pair under interfaces, too.");
-  }
-}
-
 BroadPhase make_broad_phase(const Scene& scene, std::span<const Joint> joints,
                             const Bodies& bodies) {
   if (scene.everything() == nullptr) return {};
-  refuse_adjusted(scene);
   BroadPhase all(bodies, joints);
   constexpr std::size_t most_told = 5;
   std::vector<InputError> wrong;

@@ -313,9 +313,9 @@ std::string to_text(const Estimate& e, bool verbose) {
   }
   for (const Estimate::Ties& ties : e.ties) text += text_of(ties);
   if (!e.not_passive.empty())
-    text += fmt::format("  passively  not: {}, so a window that the accurate method cannot take ends "
-                        "the run\n",
-                        e.not_passive);
+    text += fmt::format(
+        "  passively  not: {}, so a window that the accurate method cannot take ends the run\n",
+        e.not_passive);
   if (!e.in_use.empty()) text += fmt::format("  in use     {}\n", fmt::join(e.in_use, ", "));
   if (verbose) text += fmt::format("  unused     {}\n", fmt::join(e.not_built, ", "));
   return text;

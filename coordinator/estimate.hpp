@@ -73,8 +73,8 @@ struct Estimate {
   std::int64_t exchanges_low = 0, exchanges_high = 0;
   std::int64_t sweeps = 1;                     // most iterations of a window in contact, on average
   std::vector<std::string> in_use, not_built;  // optional features
-  // Why windows that the accurate method cannot take end the run; empty: they go passively, or there
-  // are none.
+  // Why windows that the accurate method cannot take end the run; empty: they go passively, or
+  // there are none.
   std::string not_passive;
 };
 

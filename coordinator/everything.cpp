@@ -147,6 +147,22 @@ void validate_self(const Scene& scene, std::span<const Description* const> bodie
                    "ports: {skin: boundary}, or leave it out.");
 }
 
+/// Nodes are moved onto partners that a body's specification knows: those of interfaces.
+void refuse_adjusted(const Scene& scene, const Document& document) {
+  for (const auto& [name, body] : scene.bodies) {
+    const auto names_it = [&name](const auto& interface) {
+      return !interface.second.tied && std::ranges::any_of(interface.second.sides, [&](auto& side) {
+        return split_port(side).body == name;
+      });
+    };
+    if (!body.adjusts || std::ranges::any_of(scene.interfaces, names_it)) continue;
+    throw InputError("has no effect: nodes are moved out of surfaces that interfaces name, and "
+                     "contact.everything names none",
+                     document.where("bodies." + name + ".initial.adjust"),
+                     "Write the pair under interfaces, too.");
+  }
+}
+
 }  // namespace
 
 void validate_everything(const Scene& scene, std::span<const Description* const> bodies,
@@ -164,6 +180,7 @@ void validate_everything(const Scene& scene, std::span<const Description* const>
   for (const Description* body : bodies)
     if (body != nullptr) errors.gather([&] { validate_body(*body, document); });
   errors.gather([&] { require_finders(bodies, document); });
+  errors.gather([&] { refuse_adjusted(scene, document); });
   errors.gather([&] { require_friction(*scene.everything(), bodies, document); });
   errors.gather([&] { require_rigid(*scene.everything(), bodies, document); });
   errors.gather([&] { require_one_kind(bodies, document); });

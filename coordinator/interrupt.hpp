@@ -17,8 +17,6 @@ struct Interrupts {
 /// that are ignored already stay so.
 Interrupts watch_for_interrupts();
 
-constexpr unsigned usual_grace = 10;  // [s]
-
 /// Whoever is asked to end has so long, to come to a state that can be kept; `told`: the first
 /// signal says that it is waited for.
 void grant_patience(unsigned seconds, bool told = false);

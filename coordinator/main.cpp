@@ -93,7 +93,9 @@ int init_verb(const InitCommand& command) {
   write_new(made.files, command.force, "name");
   for (const std::string& line : made.words) fmt::print("{}\n", line);
   for (const auto& [path, text] : made.files) fmt::print("written: {}\n", path.string());
-  fmt::print("next: abut run {}\n", made.files.front().first.string());
+  const bool study = command.from == "study";  // its own file is the last one
+  fmt::print("next: abut {} {}\n", study ? "study" : "run",
+             (study ? made.files.back() : made.files.front()).first.string());
   return 0;
 }
 

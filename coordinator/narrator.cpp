@@ -220,7 +220,9 @@ void Narrator::passive(double time, const std::string& reason, bool statics) {
         time,
         blamed(reason),
         fmt::format("the accurate method has no answer ({}): bodies go on passively, which {}{}",
-                    reason, statics ? "is right to some hundredths where they come to rest" : "loses energy",
+                    reason,
+                    statics ? "is right to some hundredths where they come to rest"
+                            : "loses energy",
                     told_passive_ == most_told ? "; later times are counted only" : ""),
         {}});
 }

@@ -97,9 +97,9 @@ std::vector<OverlapPlace> shared_places(const NamedSurface& one, const NamedSurf
 
 /// Of contact between everything nodes are not moved.
 std::string adjusting(const std::string& where) {
-  return !where.starts_with("interfaces.") ? ", or write the pair under interfaces and give one of them initial: "
-                         "{adjust: true}"
-                       : ", or give one of them initial: {adjust: true}";
+  return where.starts_with("interfaces.")
+             ? ", or give one of them initial: {adjust: true}"
+             : ", or write the pair under interfaces and give one of them initial: {adjust: true}";
 }
 
 /// What parts bodies that overlap so deep [m].
@@ -168,8 +168,8 @@ void check_averages(const NamedSurface& one, const NamedSurface& other, const st
                                "overlaps {} by {:.3g} m",
                                one.name, other.name, overlap),
                    where,
-                   fmt::format("Move a body with initial.position by {:.3g} m more, or make the mesh "
-                               "finer{}.",
+                   fmt::format("Move a body with initial.position by {:.3g} m more, or make the "
+                               "mesh finer{}.",
                                overlap, adjusting(where)));
 }
 

@@ -30,9 +30,9 @@ class BroadPhase {
 
   // Pairs are told in the order of their ports.
 
-  /// Whose boxes overlap in the reference configuration, those of surfaces that are not closed larger
-  /// by the width of a facet: flat ones have boxes without height, and may have passed each other
-  /// there. `near` tells of all of these, whatever their boxes are then.
+  /// Whose boxes overlap in the reference configuration, those of surfaces that are not closed
+  /// larger by the width of a facet: flat ones have boxes without height, and may have passed each
+  /// other there. `near` tells of all of these, whatever their boxes are then.
   std::vector<PortPair> near_at_start(const Bodies& bodies);
   /// That may come together within `time` [s] from the end of the last replies.
   std::vector<PortPair> near(const Bodies& bodies, double time);

@@ -430,12 +430,11 @@ void CommonStep::take_answer(int owner, double softer) {
   if (!ties_.joined(owner)) {
     if (!points_.any(owner)) return;
     const std::vector<double>& told = tried_[index(owner)].compliance;
-    const std::size_t values = points_.values(owner).size() * index(surfaces_.skin().dim);
-    if (told.size() == values && values > 1)
-      return points_.take_bound(
-          owner, Eigen::Map<const Eigen::VectorXd>(told.data(), static_cast<Eigen::Index>(values)),
-          velocities_);
-    const auto size = static_cast<Eigen::Index>(values);
+    const auto size = static_cast<Eigen::Index>(points_.values(owner).size()) *
+                      surfaces_.skin().dim;
+    if (size > 1 && index(static_cast<int>(size)) == told.size())
+      return points_.take_bound(owner, Eigen::Map<const Eigen::VectorXd>(told.data(), size),
+                                velocities_);
     points_.take(owner, Eigen::Map<const Eigen::MatrixXd>(told.data(), size, size), softer,
                  velocities_);
     return;

@@ -67,8 +67,9 @@ struct PassiveLedger {
     for (const auto& [pair, heat] : earlier.rubbed) all.rubbed[pair] += heat;
     all.deepest = std::max(deepest, earlier.deepest);
     all.unbalanced = std::max(unbalanced, earlier.unbalanced);
-    if (all.shortest_step == 0.0 || (earlier.shortest_step > 0.0 && earlier.shortest_step < shortest_step))
-      all.shortest_step = earlier.shortest_step;
+    const double before = earlier.shortest_step;
+    if (before > 0.0 && (shortest_step == 0.0 || before < shortest_step))
+      all.shortest_step = before;
     return all;
   }
   /// What bodies without inertia give up is no energy of motion.

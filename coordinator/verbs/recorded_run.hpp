@@ -27,7 +27,7 @@ struct RunOptions {
   bool quiet = false;
   bool insecure = false;           // bodies without keys may come from other machines
   bool trace = false;              // its wall time is told in trace.json
-  unsigned grace = usual_grace;    // [s] for the window under way, where a signal ends the run
+  unsigned grace = 10;             // [s] for the window under way, where a signal ends the run
   Clock::Time began;               // of the program
   std::optional<Awaited> awaited;  // absent: processes come to life as the scene says
 };

@@ -100,7 +100,8 @@ std::function<double(const std::array<double, 3>&, double)> expression(const std
     std::string why = error.GetMsg();
     while (why.ends_with('.')) why.pop_back();
     throw InputError(fmt::format("'{}' cannot be read as an expression: {}", text, why), where,
-                     "Write it with numbers, x, y, z, t, pi, + - * / ^ and functions such as sin.");
+                     "Write it with numbers, without units, in those of the scene, with x, y, z, "
+                     "t, pi, + - * / ^ and functions such as sin.");
   }
 }
 

@@ -56,8 +56,8 @@ class MidpointStep {
   /// False: there is none.
   [[nodiscard]] bool compliance(const Motion& motion, const PortMap& ports,
                                 const std::vector<std::size_t>& values, std::vector<double>& out);
-  /// The diagonal (values) of one that is nowhere smaller, of a body with inertia: what its mass alone
-  /// would answer.
+  /// The diagonal (values) of one that is nowhere smaller, of a body with inertia: what its mass
+  /// alone would answer.
   void bound(const Motion& motion, const PortMap& ports, const std::vector<std::size_t>& values,
              std::vector<double>& out);
 

@@ -1,6 +1,6 @@
 // Goal: where more points are pressed passively than a body can tell the whole compliance of, the
-// bound by its mass leads to the same: no energy is made, momentum stays, plates part. Oracle: equal
-// plates that meet flat exchange their velocities.
+// bound by its mass leads to the same: no energy is made, momentum stays, plates part. Oracle:
+// equal plates that meet flat exchange their velocities.
 
 #include <string>
 
@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/runs.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace abut::passive_many_points_tests {
 namespace {
@@ -49,7 +50,7 @@ TEST(PassiveManyPoints, PlatesExchangeTheirVelocities) {
     ASSERT_GT(up.windows, 5);
     const double momentum = -250.0;  // [kg m/s] of 50 kg
     const double a = run->measure("body.a.momentum.y"), b = run->measure("body.b.momentum.y");
-    EXPECT_NEAR(a + b, momentum, 1.0e-10 * 250.0);
+    EXPECT_NEAR(a + b, momentum, roundoff(1000.0, momentum));
     // Nodes that meet lose what moves them, h/2L of the energy or half of that of the velocity.
     EXPECT_NEAR(b, momentum, 0.15 * 250.0);
     double energy = 0.0;
@@ -57,7 +58,8 @@ TEST(PassiveManyPoints, PlatesExchangeTheirVelocities) {
       for (const char* of : {"kinetic", "stored", "dissipated"})
         energy += run->measure(fmt::format("body.{}.energy.{}", body, of));
     const double begin = 625.0, told = up.joules() + up.friction;
-    EXPECT_LE(energy, begin * (1.0 + 1.0e-6));
+    EXPECT_LE(energy, begin);
+    // Newton's method leaves a part in a thousand of what a step changes at finite strain.
     EXPECT_NEAR(energy + told, begin, 1.0e-3 * begin);
     EXPECT_TRUE(run->end.overlaps.empty());
   }

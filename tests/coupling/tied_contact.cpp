@@ -265,7 +265,11 @@ std::string on_its_corner(const std::string& friction, const std::string& scheme
                         const std::string& place, const std::string& joint) {
     return fmt::format(
         R"(  {}:
-    model: {{{}: {{dimension: 2, map: ["0.8*x - 0.6*y", "0.6*x + 0.8*y"], mesh: {{rectangle: {{lengths: [0.4, 0.3], elements: {}}}}}}}}}
+    model:
+      {}:
+        dimension: 2
+        map: ["0.8*x - 0.6*y", "0.6*x + 0.8*y"]
+        mesh: {{rectangle: {{lengths: [0.4, 0.3], elements: {}}}}}
     material: {{linear_elastic: {{youngs_modulus: 2.0e6, poissons_ratio: 0.3, density: 700.0}}}}
     integrator: {{{}: {{step: {}}}}}
     initial: {{position: {}, velocity: [0.5, -3.0]}}
@@ -278,7 +282,10 @@ std::string on_its_corner(const std::string& friction, const std::string& scheme
 time: {{begin: 0.0, end: 0.04, window: 4.0e-4}}
 bodies:
   floor:
-    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [4.0, 1.0], elements: [1, 1]}}}}}}}}
+    model:
+      rigid_tool:
+        dimension: 2
+        mesh: {{rectangle: {{lengths: [4.0, 1.0], elements: [1, 1]}}}}
     initial: {{position: [-2.0, -1.0]}}
     ports: {{face: {{side: top}}}}
 {}{}contact: {{everything: {{friction: {}}}}}

@@ -230,7 +230,7 @@ class Keys(PythonTest):
                 self.end(body)
 
     def test_numbers_have_units(self):
-        """200 g and 0.8 kN/mm are the same numbers as 0.2 and 8e5: the run is the same to the bit."""
+        """200 g and 0.8 kN/mm are the same numbers as 0.2 and 8e5: the run is the same."""
         hashes = set()
         for mass, stiffness in (("0.2", "8.0e+5"), ("200 g", "0.8 kN/mm"), ("0.2kg", "800 N/mm")):
             scene = self.scene_with("mass: 0.2, stiffness: 8.0e+5",

@@ -1,5 +1,6 @@
 """How the runs of a study ended, against what the study says of it; and how to repeat one."""
 
+import re
 import shlex
 import shutil
 from collections import Counter
@@ -10,6 +11,7 @@ from abut_tools.study_results import Result
 from abut_tools.yaml_text import flow_text
 
 MOST_TOLD = 10  # kinds of ends that a terminal lists
+NUMBERS = re.compile(r"[-+]?\d[\d.]*(e[-+]?\d+)?")  # reasons that differ by these alone are one
 
 
 def surprises(results: list[Result]) -> list[Result]:
@@ -32,10 +34,10 @@ def told(results: list[Result]) -> list[str]:
     """Lines for a terminal: runs of one reason are told once."""
     kinds = {}
     for result in results:
-        kinds.setdefault((result.status, result.key or why(result)),
+        kinds.setdefault((result.status, result.key, NUMBERS.sub("", why(result))),
                          []).append(result)
     lines = []
-    for (status, _), own in list(kinds.items())[:MOST_TOLD]:
+    for (status, *_), own in list(kinds.items())[:MOST_TOLD]:
         more = f" and {len(own) - 1} more" if len(own) > 1 else ""
         lines += [f"  {status:<10}{own[0].label}{more}", f"            {why(own[0])}"]
     left = sum(len(own) for own in list(kinds.values())[MOST_TOLD:])

@@ -59,9 +59,9 @@ def _scaled(number: str, mantissa: float, exponent: int) -> float:
 
 
 def in_si(value, unit: str, system):
-    """The number in SI, or in the unit where that is none of length, mass and time. Text is a number
-    with a unit, which must be of this one's kind; a number alone is in the units of the system.
-    None: it is neither, or of another kind."""
+    """The number in SI, or in the unit where that is none of length, mass and time. Text is a
+    number with a unit, which must be of this one's kind; a number alone is in the units of the
+    system. None: it is neither, or of another kind."""
     wanted = unit_of(unit) if unit else (NONE, 1.0, 0)
     if isinstance(value, str):
         parts = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*", value)
