@@ -13,8 +13,8 @@ namespace abut {
 /// nodes, under its own loads and supports, and with impulses on its ports and nothing else
 /// there. Ports go straight from where they are to where they end.
 struct PassiveStep {
-  double begin = 0.0, end = 0.0;               // [s]
-  std::vector<std::vector<double>> impulses;   // [N s] (ports; points x dim); a port's empty: none
+  double begin = 0.0, end = 0.0;              // [s]
+  std::vector<std::vector<double>> impulses;  // [N s] (ports; points x dim); a port's empty: none
   // (ports) points whose compliance is wanted, ascending
   std::vector<std::vector<std::int32_t>> pressed;
   // Of bodies without inertia: what holds them in the step is 4^-looser of what it is by itself.

@@ -192,7 +192,7 @@ class Controller {
   RunEnd end_;
   bool resumed_ = false, staged_ = false, settles_ = false;  // it settles: springs hold a body
   std::vector<std::optional<HandOver>> handed_;  // by body; empty: none is another one now
-  std::optional<StageEvent> event_;  // none: time.end alone ends the stage
+  std::optional<StageEvent> event_;              // none: time.end alone ends the stage
 };
 
 }  // namespace abut

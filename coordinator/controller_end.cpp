@@ -82,13 +82,13 @@ void Controller::tell_losses() {
   if (!(lost > notable) || joints_.empty()) return;
   const std::string& name = bodies_.describe(coarsest).name;
   const bool tied = std::ranges::any_of(joints_, &Joint::tied);
-  narrator_.warning(clock_.time(), name,
-                    fmt::format("{} took {:.3g} J, {:.2g} % of the most there was in motion, "
-                                "beside friction: {} short against the steps, of which those of "
-                                "'{}' are the longest; smaller ones take less",
-                                tied ? "contact, and ties of unlike steps," : "contact", lost,
-                                100.0 * lost / guard_.most(),
-                                tied ? "what they pass on is" : "it is", name));
+  narrator_.warning(
+      clock_.time(), name,
+      fmt::format("{} took {:.3g} J, {:.2g} % of the most there was in motion, "
+                  "beside friction: {} short against the steps, of which those of "
+                  "'{}' are the longest; smaller ones take less",
+                  tied ? "contact, and ties of unlike steps," : "contact", lost,
+                  100.0 * lost / guard_.most(), tied ? "what they pass on is" : "it is", name));
 }
 
 void Controller::look_for_overlaps() {

@@ -166,9 +166,8 @@ bool Controller::repay() {
   }
   std::erase_if(touching, [this](int b) { return !std::isfinite(bodies_.describe(b).mass); });
   const bool accounts = passive_.on_a_line();  // bars give back what contact has given them, alone
-  double excess =
-      accounts ? guard_.excess(bodies_.responses(), {}, events_.payments(guard_.most()))
-               : guard_.excess(bodies_.responses(), bodies_.struck());
+  double excess = accounts ? guard_.excess(bodies_.responses(), {}, events_.payments(guard_.most()))
+                           : guard_.excess(bodies_.responses(), bodies_.struck());
   if (touching.empty() || !(excess > 0.0)) return true;
   if (accounts) excess = std::min(excess, events_.overpaid(guard_.most()));
   if (!(excess > 0.0)) return true;
@@ -269,10 +268,10 @@ void Controller::go_accurately() {
   const bool statics = passive_.statics();
   if ((!passive_.quiet() && !statics) || waiting_.left > 0 || !goes_on()) return;
   const bool apart = statics || std::ranges::all_of(joints_, [&](Joint& joint) {
-    if (joint.exchange == nullptr || joint.tied()) return true;
-    const auto [distance, speed] = joint.watch->approach(joint, bodies_);
-    return distance > far_ways * speed * scene_.time.window;
-  });
+                       if (joint.exchange == nullptr || joint.tied()) return true;
+                       const auto [distance, speed] = joint.watch->approach(joint, bodies_);
+                       return distance > far_ways * speed * scene_.time.window;
+                     });
   if (!apart || !folds_.apart(far_ways)) return;
   if (!passive_.leave(clock_.time(), statics ? anything : lost_by_return * guard_.most())) {
     if (!statics) waiting_.left = soon;
@@ -317,8 +316,8 @@ GivenUp Controller::given_up() const {
           .push_out = passive.push_out,
           .repaid = passive.repaid,
           .deepest = passive.deepest,
-          .largest = std::max({end_.given_up.largest, guard_.most(),
-                               energy_put_in(bodies_, passive_.ledger())}),
+          .largest = std::max(
+              {end_.given_up.largest, guard_.most(), energy_put_in(bodies_, passive_.ledger())}),
           .lost = passive.lost,
           .taken = passive.taken,
           .refused_by = passive.refused_by};

@@ -156,10 +156,11 @@ void refuse_adjusted(const Scene& scene, const Document& document) {
       });
     };
     if (!body.adjusts || std::ranges::any_of(scene.interfaces, names_it)) continue;
-    throw InputError("has no effect: nodes are moved out of surfaces that interfaces name, and "
-                     "contact.everything names none",
-                     document.where("bodies." + name + ".initial.adjust"),
-                     "Write the pair under interfaces, too.");
+    throw InputError(
+        "has no effect: nodes are moved out of surfaces that interfaces name, and "
+        "contact.everything names none",
+        document.where("bodies." + name + ".initial.adjust"),
+        "Write the pair under interfaces, too.");
   }
 }
 

@@ -141,8 +141,9 @@ void Narrator::overlap(const Overlap& overlap, std::span<const Joint> joints, bo
                 : "no interface joins them: give one, or contact: {everything: {}}";
   const std::vector<int> wholes = tied_wholes(joints, bodies_.count());
   if (wholes[index(a)] == wholes[index(b)])
-    advice = "they hang together by ties, and parts of one whole do not touch each other: give an "
-             "interface between them, or finer meshes of what is between them and gives way";
+    advice =
+        "they hang together by ties, and parts of one whole do not touch each other: give an "
+        "interface between them, or finer meshes of what is between them and gives way";
   if (joint != joints.end()) {
     advice = fmt::format(
         "contact '{}' has {}", joint->name,
@@ -219,11 +220,10 @@ void Narrator::passive(double time, const std::string& reason, bool statics) {
   tell({RunEvent::Kind::warning,
         time,
         blamed(reason),
-        fmt::format("the accurate method has no answer ({}): bodies go on passively, which {}{}",
-                    reason,
-                    statics ? "is right to some hundredths where they come to rest"
-                            : "loses energy",
-                    told_passive_ == most_told ? "; later times are counted only" : ""),
+        fmt::format(
+            "the accurate method has no answer ({}): bodies go on passively, which {}{}", reason,
+            statics ? "is right to some hundredths where they come to rest" : "loses energy",
+            told_passive_ == most_told ? "; later times are counted only" : ""),
         {}});
 }
 

@@ -87,8 +87,7 @@ void OverlapSearch::pose_all(Bodies& bodies) {
 
 /// Whether two bodies may overlap: they are one where they are tied, and what nothing joins, and
 /// does not touch everything, may lie in one place from the start, as variants of one body do.
-bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joints,
-                          bool all_touch) {
+bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joints, bool all_touch) {
   bool joined = false;
   for (const Joint& joint : joints) {
     if (!joins(joint, pair)) continue;
@@ -113,8 +112,8 @@ double OverlapSearch::fit(std::pair<int, int> pair, std::span<const Joint> joint
   return most;
 }
 
-std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> joints,
-                                         double time, bool all_touch) {
+std::vector<Overlap> OverlapSearch::look(Bodies& bodies, std::span<const Joint> joints, double time,
+                                         bool all_touch) {
   std::vector<Overlap> found;
   if (bodies.count() < 2) return found;
   make(bodies);

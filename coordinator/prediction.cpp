@@ -87,8 +87,9 @@ std::string to_text(const Prediction& prediction, const ProbedRun& probe, double
                                      time_words(probe.wall), closed);
   text += fmt::format("; {}\n", seen);
   if (!prediction.exact && closed == 0 && prediction.high > prediction.low)
-    text += "             nothing pressed yet: windows in contact may cost more; a longer --probe "
-            "sees them\n";
+    text +=
+        "             nothing pressed yet: windows in contact may cost more; a longer --probe "
+        "sees them\n";
   text += fmt::format("  memory     about {:.0f} MiB in {} processes\n", memory_mib, processes);
   return text;
 }

@@ -82,7 +82,7 @@ ProbedRun probe_run(const Scene& scene, const std::vector<Subdomain*>& bodies, d
   std::thread watch([&] {
     while (!over) {
       const double time = seconds_since(began);
-      const double longer = notes.ended < enough_windows ? times_as_long
+      const double longer = notes.ended < enough_windows                ? times_as_long
                             : touches && notes.pressed < enough_windows ? times_for_contact
                                                                         : 1.0;
       if (interrupted || time > longer * seconds) stop = true;

@@ -106,17 +106,15 @@ std::string adjusting(const std::string& where) {
 std::string remedy(double depth, const NamedSurface& one, const NamedSurface& other,
                    const std::string& where) {
   std::string text = "Move a body with initial.position until they are apart";
-  if (depth <= facet_size(start(one.geometry), start(other.geometry)))
-    text += adjusting(where);
+  if (depth <= facet_size(start(one.geometry), start(other.geometry))) text += adjusting(where);
   if (depth <= deepest_fit(one, other))
     text += ", or, where a fit is meant, initial: {interference: {over: TIME}}";
   for (const NamedSurface* side : {&one, &other})
     if (side->unturned && !is_closed(outside(*side)))
-      text += fmt::format(", or, where {} is a surface alone, turn its facets round: it looks {}",
-                          side->name,
-                          side->geometry.dim == 2
-                              ? "to the right of its lines"
-                              : "to where the nodes of its facets go round anticlockwise");
+      text += fmt::format(
+          ", or, where {} is a surface alone, turn its facets round: it looks {}", side->name,
+          side->geometry.dim == 2 ? "to the right of its lines"
+                                  : "to where the nodes of its facets go round anticlockwise");
   return text + ".";
 }
 

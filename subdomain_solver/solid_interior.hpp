@@ -57,14 +57,14 @@ class SolidInterior final : public Interior,
     Scheme scheme;
     Motion motion;  // q and v of the start
     std::vector<HeldCoordinates> constraints;
-    std::unique_ptr<Reactions> reactions;  // null: no constraints
-    std::vector<double> frequencies;       // [Hz] of modal bodies, ascending
-    double body_acceleration = 0.0;        // [m/s^2] of the body force
-    std::string rung = "fe";               // for people
-    bool deforms = true;                   // there is stress to tell of
-    std::vector<double> loose;             // Description::loose
+    std::unique_ptr<Reactions> reactions;            // null: no constraints
+    std::vector<double> frequencies;                 // [Hz] of modal bodies, ascending
+    double body_acceleration = 0.0;                  // [m/s^2] of the body force
+    std::string rung = "fe";                         // for people
+    bool deforms = true;                             // there is stress to tell of
+    std::vector<double> loose;                       // Description::loose
     std::vector<std::unique_ptr<Load>> whole_loads;  // all mass on the nodes; empty: as problem's
-    const RigidModel* rigid = nullptr;   // the problem's model, of a rigid body
+    const RigidModel* rigid = nullptr;               // the problem's model, of a rigid body
     bool massive_surface = false;        // it has no layer, and takes obstacles when passive alone
     std::optional<double> pressed_over;  // [s] in which wanted interference grows; absent: none
   };
@@ -182,17 +182,17 @@ class SolidInterior final : public Interior,
   bool stands_ = false;         // it has taken over a state in balance, which no window has left
   std::vector<double> worked_;  // [J] (ports) that came through them in the window so far
   PortValues seen_;
-  int substep_ = 0;  // the last one of the window
+  int substep_ = 0;                  // the last one of the window
   std::unique_ptr<Problem> loaded_;  // the problem with its loads, while the body is probed
   std::unique_ptr<LinearisedModel> linearised_;  // and its model for small motions
   std::vector<double> u_, v_;  // (nodes, dim) along the axes of space, as see_nodes() left them
-  std::vector<double> lag_;                  // [m/s] of velocities behind the impulses
+  std::vector<double> lag_;    // [m/s] of velocities behind the impulses
   Vector momentum_, behind_, nodes_behind_;  // [kg m/s]; behind the impulses: of coordinates, nodes
   std::vector<double> places_, left_, before_, now_;  // [m] (left by a substep), [N] (port values)
-  mutable Vector change_, on_ports_;         // [N] (coordinates), (nodes, dim)
-  std::unique_ptr<PortForecast> forecast_;   // null: only walks tell where ports go
-  std::unique_ptr<PortStatics> statics_;     // null: the body has inertia, or no ports
-  std::unique_ptr<MidpointStep> midpoint_;   // of the passive form; null: none, or another one
+  mutable Vector change_, on_ports_;                  // [N] (coordinates), (nodes, dim)
+  std::unique_ptr<PortForecast> forecast_;            // null: only walks tell where ports go
+  std::unique_ptr<PortStatics> statics_;              // null: the body has inertia, or no ports
+  std::unique_ptr<MidpointStep> midpoint_;  // of the passive form; null: none, or another one
   std::unique_ptr<RigidStep> rigid_step_;
   SparseMatrix whole_mass_, given_mass_;  // [kg] (nodal values) of the nodes, when first asked for
 };

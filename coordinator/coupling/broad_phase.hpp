@@ -55,8 +55,8 @@ class BroadPhase {
 
   std::vector<Surface> ports_;
   std::set<Places> joined_;
-  std::vector<std::vector<int>> place_;   // in ports_, by body and port; -1: no surface
-  double margin_ = 0.0;                   // [m] by which rows of any pair may press early
+  std::vector<std::vector<int>> place_;  // in ports_, by body and port; -1: no surface
+  double margin_ = 0.0;                  // [m] by which rows of any pair may press early
   std::vector<Box> boxes_;
   std::vector<Places> passed_;  // of the start, by the width of a facet alone
 };

@@ -430,8 +430,8 @@ void CommonStep::take_answer(int owner, double softer) {
   if (!ties_.joined(owner)) {
     if (!points_.any(owner)) return;
     const std::vector<double>& told = tried_[index(owner)].compliance;
-    const auto size = static_cast<Eigen::Index>(points_.values(owner).size()) *
-                      surfaces_.skin().dim;
+    const auto size =
+        static_cast<Eigen::Index>(points_.values(owner).size()) * surfaces_.skin().dim;
     if (size > 1 && index(static_cast<int>(size)) == told.size())
       return points_.take_bound(owner, Eigen::Map<const Eigen::VectorXd>(told.data(), size),
                                 velocities_);

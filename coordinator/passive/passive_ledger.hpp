@@ -50,17 +50,17 @@ struct PassiveLedger {
   /// Both stages' together.
   PassiveLedger after(const PassiveLedger& earlier) const {
     PassiveLedger all = *this;
-    for (double PassiveLedger::* sum :
+    for (double PassiveLedger::*sum :
          {&PassiveLedger::normal, &PassiveLedger::impacts, &PassiveLedger::friction,
           &PassiveLedger::push_out, &PassiveLedger::damped, &PassiveLedger::repaid,
           &PassiveLedger::switched})
       all.*sum += earlier.*sum;
-    for (std::int64_t PassiveLedger::* count :
+    for (std::int64_t PassiveLedger::*count :
          {&PassiveLedger::steps, &PassiveLedger::refused, &PassiveLedger::windows,
           &PassiveLedger::rigid, &PassiveLedger::halved_windows, &PassiveLedger::rigid_windows,
           &PassiveLedger::unanswered, &PassiveLedger::unsettled})
       all.*count += earlier.*count;
-    for (std::vector<double> PassiveLedger::* of :
+    for (std::vector<double> PassiveLedger::*of :
          {&PassiveLedger::lost, &PassiveLedger::taken, &PassiveLedger::refused_by})
       for (std::size_t b = 0; b < (earlier.*of).size(); ++b)
         add(all.*of, static_cast<int>(b), (earlier.*of)[b]);

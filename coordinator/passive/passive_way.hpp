@@ -85,15 +85,15 @@ class PassiveWay {
   Bodies& bodies_;
   std::string hindrance_;
   bool active_ = false, quiet_ = true;
-  bool halved_ = false;  // a step of the window was shorter than the nominal one
+  bool halved_ = false;             // a step of the window was shorter than the nominal one
   PassiveLedger ledger_, earlier_;  // of the stage; of those before
   bool were_statics_ = false;       // which had no inertia
-  double window_;                            // [s] of the scene
-  double nominal_ = 0.0;                     // [s] the longest step
-  int level_ = 0;                            // steps are nominal / 2^level
-  int good_ = 0;                             // steps since the level changed
-  int held_ = 0;                             // times in a row that bodies were held rigid
-  double farthest_ = 0.0;                    // [m] of statics: by a step at most, since enter()
+  double window_;                   // [s] of the scene
+  double nominal_ = 0.0;            // [s] the longest step
+  int level_ = 0;                   // steps are nominal / 2^level
+  int good_ = 0;                    // steps since the level changed
+  int held_ = 0;                    // times in a row that bodies were held rigid
+  double farthest_ = 0.0;           // [m] of statics: by a step at most, since enter()
   std::vector<std::array<int, 4>> pressed_;  // body, port, body, port
   std::unique_ptr<TouchingSurfaces> surfaces_;
   std::unique_ptr<NearRows> near_;

@@ -76,8 +76,7 @@ void RowImpulses::find_changes(const DistanceRow& row, int directions, std::size
                                Answer& answer, Eigen::Matrix3d& own) const {
   const int body = answer.body[side];
   const Eigen::MatrixXd& compliance = points_.compliance(body);
-  for (int d = 0; d < directions; ++d)
-    answer.change[index(d)][side].all.setZero(compliance.rows());
+  for (int d = 0; d < directions; ++d) answer.change[index(d)][side].all.setZero(compliance.rows());
   visit_pressed(row, body, [&](int slot, std::size_t i) {
     for (int d = 0; d < directions; ++d)
       answer.change[index(d)][side].all.noalias() +=

@@ -41,14 +41,14 @@ class RowImpulses {
   double limit(double most);
 
  private:
-  struct Change {  // [1/kg] of a body's velocities by a unit impulse
-    Eigen::VectorXd all;                                // (values)
+  struct Change {         // [1/kg] of a body's velocities by a unit impulse
+    Eigen::VectorXd all;  // (values)
     std::vector<std::pair<int, Eigen::Vector3d>> some;  // in its place: first value, of a point
   };
   struct Answer {  // of one row
     std::array<int, 2> body = {-1, -1};
     std::array<std::array<Change, 2>, 3> change;  // (directions; sides)
-    double normal = 0.0, tangential = 0.0;  // [1/kg] of its own; the larger one of tangents
+    double normal = 0.0, tangential = 0.0;        // [1/kg] of its own; the larger one of tangents
   };
 
   double along(const Eigen::Vector3d& direction, const Eigen::VectorXd& values, int slot) const;

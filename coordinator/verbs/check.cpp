@@ -168,8 +168,9 @@ int check_verb(const CheckCommand& command) {
   if (isatty(STDOUT_FILENO) == 1) std::fflush(stdout);  // the probe takes a moment
   fmt::print("{}", prediction_text(scene, document, estimate, command.probe));
   if (staged)
-    fmt::print("  stages     time and memory are those of the first one: the others begin where it "
-               "ends, and are not tried\n");
+    fmt::print(
+        "  stages     time and memory are those of the first one: the others begin where it "
+        "ends, and are not tried\n");
   return interrupt_exit_code();
 }
 

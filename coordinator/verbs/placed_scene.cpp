@@ -170,9 +170,9 @@ Validated validate_all(const Scene& scene, const Document& document, const Place
     const std::vector<InputError> doubts =
         unit_doubts(placement.descriptions(), local_facts(scene, document), document);
     if (doubts.empty()) throw;
-    throw InputError(error.what_is_wrong, error.where,
-                     fmt::format("{} Look at the units first: {}", error.remedy,
-                                 doubts.front().what()));
+    throw InputError(
+        error.what_is_wrong, error.where,
+        fmt::format("{} Look at the units first: {}", error.remedy, doubts.front().what()));
   }
 }
 

@@ -211,10 +211,9 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
   for (const std::unique_ptr<Subdomain>& body : bodies) pointers.push_back(body.get());
   Controller controller(scene, pointers, observers, &interrupts.asked);
   trace(spans, plan, options, controller);
-  Checkpoints checkpoints(
-      {directory, scene.output.checkpoint, more, resolved_text(scene, plan.document),
-       swapped_bodies(plan.document)},
-      pointers, observers, clock);
+  Checkpoints checkpoints({directory, scene.output.checkpoint, more,
+                           resolved_text(scene, plan.document), swapped_bodies(plan.document)},
+                          pointers, observers, clock);
   grant_patience(options.grace, !options.quiet);
   const RunEnd end = conduct(controller, checkpoints, from, directory);
   // Bodies in the middle of a solve hear no orderly end; they are ended when the launch goes.

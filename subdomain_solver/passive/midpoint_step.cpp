@@ -315,8 +315,7 @@ MidpointStep::Factors* MidpointStep::factors() {
     tangent_ = rest.tangent;
   }
   SparseMatrix whole = inertia_ + 0.25 * length * length * tangent_, reduced;
-  FreeCoordinates(static_cast<int>(mass_.size()), body_.problem->supports)
-      .extract(whole, reduced);
+  FreeCoordinates(static_cast<int>(mass_.size()), body_.problem->supports).extract(whole, reduced);
   Factors made{length, make_direct_solver(Pivots::every), {}, true};
   if (!made.solver->factor(reduced)) return nullptr;
   if (factors_.size() == most_factors) factors_.erase(factors_.begin());

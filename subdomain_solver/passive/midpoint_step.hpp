@@ -112,9 +112,9 @@ class MidpointStep {
   } gone_;
   std::vector<Factors> factors_;  // of the last lengths, the last one used at the end
   FreeStep unpushed_;
-  Factors own_;        // of a step under impulses
+  Factors own_;                            // of a step under impulses
   std::map<std::size_t, double> by_mass_;  // [1/kg] bound() of values of the ports
-  Vector answer_;      // [m/s] (dofs) to the last impulse, from the state of the free step
+  Vector answer_;  // [m/s] (dofs) to the last impulse, from the state of the free step
   bool again_ = false, answered_ = false;
   bool balanced_ = false;  // as well as rounding allows, at the end of the last search
   // Of the two, those of the last correction, and those that the next tangent goes to.
