@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -38,9 +39,14 @@ struct PassiveReply {
   // [1/kg] (values, values), values = pressed points x dim, of all ports in their order:
   // what an impulse on one value adds to another one's mean velocity over the step, which is its
   // displacement over its length. Symmetric, positive semidefinite; of a body that is not linear
-  // that of a tangent of the step, made definite. Or (values), where that would be too large: the
-  // diagonal of one that is nowhere smaller, which takes more steps' trials.
+  // that of a tangent of the step, made definite. Of more values than most_whole a body may tell
+  // (values) instead: the diagonal of one that is nowhere smaller, as of its mass alone. Impulses
+  // are then found in more trials.
   std::vector<double> compliance;
+  static constexpr std::size_t most_whole = 2400;  // of more it takes gigabytes, and as many solves
+  bool bounds(std::size_t values) const {
+    return values > most_whole && compliance.size() == values;
+  }
   BodyRecord record;  // at the step's end; energy in the form that the midpoint rule conserves
   // [m] by which a point of a port leaves the straight way at most: of bodies that turn
   double bulge = 0.0;

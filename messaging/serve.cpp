@@ -360,11 +360,16 @@ PassiveForm& Server::passive() {
 void Server::passive_step() {
   PassiveForm& form = passive();
   decode(bulk_, body_->describe(), passive_step_);
+  const std::size_t values = pressed_values(passive_step_, body_->describe());
+  const auto refuse = [&](std::size_t numbers) {
+    refuse_large(sizeof(double) * numbers,
+                 fmt::format("the compliance of {} pressed values", values));
+  };
+  // Before it is made, but where a body may bound it.
+  if (values <= PassiveReply::most_whole) refuse(values * values);
   form.start(passive_step_);
   const Outcome outcome = form.finish(passive_reply_);
-  refuse_large(sizeof(double) * passive_reply_.compliance.size(),
-               fmt::format("the compliance of {} pressed values",
-                           pressed_values(passive_step_, body_->describe())));
+  refuse(passive_reply_.compliance.size());
   if (const Failed* failed = std::get_if<Failed>(&outcome)) {
     encode(*failed, *reply_.mutable_failed());
     return;

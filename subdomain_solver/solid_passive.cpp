@@ -23,8 +23,6 @@ namespace {
 
 /// Roundings of the energy of a strain of one, relative: below them a fall is no fall.
 constexpr double energy_rounding = 2.0e-15;
-/// Values of the ports: of more the whole compliance takes gigabytes, and a solution for each.
-constexpr std::size_t most_columns = 2400;
 
 /// Where velocities that have their angular momentum back have more energy than is allowed, and no
 /// deformation to pay it with: as much of the way from plain ones to them as the energy lasts for.
@@ -458,7 +456,7 @@ std::optional<Failed> SolidInterior::pass_guarded(const PassiveStep& step, Passi
     reply.compliance.clear();
   } else if (rigid_step_) {
     rigid_step_->compliance(pressed, reply.compliance);
-  } else if (pressed.size() > most_columns && !joins_ && !description_.quasi_static) {
+  } else if (pressed.size() > PassiveReply::most_whole && !joins_ && !description_.quasi_static) {
     midpoint_->bound(motion, *port_map_, pressed, reply.compliance);
   } else if (!midpoint_->compliance(motion, *port_map_, pressed, reply.compliance)) {
     return failed_newton({NewtonReport::End::singular}, step.end);

@@ -428,15 +428,7 @@ void CommonStep::solve_rows(std::size_t answered) {
 void CommonStep::take_answer(int owner, double softer) {
   if (ties_.cluster(owner) != owner) return;
   if (!ties_.joined(owner)) {
-    if (!points_.any(owner)) return;
-    const std::vector<double>& told = tried_[index(owner)].compliance;
-    const auto size =
-        static_cast<Eigen::Index>(points_.values(owner).size()) * surfaces_.skin().dim;
-    if (size > 1 && index(static_cast<int>(size)) == told.size())
-      return points_.take_bound(owner, Eigen::Map<const Eigen::VectorXd>(told.data(), size),
-                                velocities_);
-    points_.take(owner, Eigen::Map<const Eigen::MatrixXd>(told.data(), size, size), softer,
-                 velocities_);
+    if (points_.any(owner)) points_.take(owner, tried_[index(owner)], softer, velocities_);
     return;
   }
   const PassiveTies::Answer answer = ties_.answer(owner, points_.values(owner));

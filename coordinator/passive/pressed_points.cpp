@@ -64,11 +64,16 @@ void PressedPoints::take(int owner, const Eigen::Ref<const Eigen::MatrixXd>& com
   take_velocities(to, velocities);
 }
 
-void PressedPoints::take_bound(int owner, const Eigen::Ref<const Eigen::VectorXd>& diagonal,
-                               std::span<const Eigen::Vector3d> velocities) {
+void PressedPoints::take(int owner, const PassiveReply& reply, double softer,
+                         std::span<const Eigen::Vector3d> velocities) {
   Body& to = bodies_[index(owner)];
+  const std::size_t values = to.slots.size() * index(surfaces_.skin().dim);
+  const auto size = static_cast<Eigen::Index>(values);
+  const double* told = reply.compliance.data();
+  if (!reply.bounds(values))
+    return take(owner, Eigen::Map<const Eigen::MatrixXd>(told, size, size), softer, velocities);
   to.compliance.resize(0, 0);
-  to.bound = diagonal;
+  to.bound = Eigen::Map<const Eigen::VectorXd>(told, size);
   take_velocities(to, velocities);
 }
 

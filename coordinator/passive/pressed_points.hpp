@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "contract/passive.hpp"
 #include "coordinator/passive/distance_row.hpp"
 #include "coordinator/passive/touching_surfaces.hpp"
 
@@ -38,9 +39,9 @@ class PressedPoints {
   /// under the impulses that were tried.
   void take(int owner, const Eigen::Ref<const Eigen::MatrixXd>& compliance, double softer,
             std::span<const Eigen::Vector3d> velocities);
-  /// The same where the diagonal of one that is nowhere smaller was told.
-  void take_bound(int owner, const Eigen::Ref<const Eigen::VectorXd>& diagonal,
-                  std::span<const Eigen::Vector3d> velocities);
+  /// The same of what a body replied, which may be the diagonal of a bound.
+  void take(int owner, const PassiveReply& reply, double softer,
+            std::span<const Eigen::Vector3d> velocities);
   /// Body, port and point of an owner's values.
   std::vector<std::array<std::int32_t, 3>> values(int owner) const;
 

@@ -122,16 +122,17 @@ std::string prediction_text(const Scene& scene, const Document& document, const 
   }
 }
 
-/// Builds the bodies of a scene, or of one of its stages, here, and prints what the run will be.
+/// Builds the bodies of a scene, or of a stage that follows one, here, and prints what the run will
+/// be.
 Estimate print_outlook(const std::string& what, const Scene& scene, const Document& document,
-                       bool verbose) {
+                       bool verbose, bool follows) {
   Placement here{nullptr, {}};
   Estimate estimate;
   in_units_of(scene, [&] {
     here.bodies = launch_local(scene, document);
     estimate = validate_all(scene, document, here, true).estimate;
   });
-  check_nothing_before(scene);
+  if (!follows) check_nothing_before(scene);
   const std::vector<const Description*> bodies = here.descriptions();
   const std::vector<std::optional<BodyFacts>> facts = local_facts(scene, document);
   fmt::print("{}: valid\n{}", what,
@@ -150,7 +151,7 @@ bool print_stages(const Document& document, bool verbose) {
     const Scene scene = read_scene(*stage);
     print_outlook(fmt::format("{}, from {:.6g} {}", stage->name(), scene.time.begin,
                               document.units().word("s")),
-                  scene, *stage, verbose);
+                  scene, *stage, verbose, true);
   }
   return true;
 }
@@ -162,7 +163,7 @@ int check_verb(const CheckCommand& command) {
   const Scene scene = read_all_keys(document);
   check_processes(scene, document);
   check_programs(scene, document);
-  const Estimate estimate = print_outlook(command.scene, scene, document, command.verbose);
+  const Estimate estimate = print_outlook(command.scene, scene, document, command.verbose, false);
   const bool staged = print_stages(document, command.verbose);
   if (command.probe <= 0.0) return 0;
   if (isatty(STDOUT_FILENO) == 1) std::fflush(stdout);  // the probe takes a moment

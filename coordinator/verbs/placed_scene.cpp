@@ -18,7 +18,6 @@
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/recorded_bodies.hpp"
 #include "coordinator/tied_estimate.hpp"
-#include "coordinator/unit_doubts.hpp"
 
 namespace abut {
 
@@ -136,10 +135,8 @@ void in_units_of(const Scene& scene, const std::function<void()>& set_up) {
   }
 }
 
-namespace {
-
-Validated validate_known(const Scene& scene, const Document& document, const Placement& placement,
-                         bool processes) {
+Validated validate_all(const Scene& scene, const Document& document, const Placement& placement,
+                       bool processes) {
   const std::vector<const Description*> bodies = placement.descriptions();
   validate_bodies(scene, bodies, document);
   if (processes)
@@ -156,24 +153,6 @@ Validated validate_known(const Scene& scene, const Document& document, const Pla
   valid.estimate = estimate(scene, bodies, contact);
   valid.estimate.ties = std::move(ties);
   return valid;
-}
-
-}  // namespace
-
-/// A number that was meant in another unit makes something else impossible: what is told of that
-/// says so.
-Validated validate_all(const Scene& scene, const Document& document, const Placement& placement,
-                       bool processes) {
-  try {
-    return validate_known(scene, document, placement, processes);
-  } catch (const InputError& error) {
-    const std::vector<InputError> doubts =
-        unit_doubts(placement.descriptions(), local_facts(scene, document), document);
-    if (doubts.empty()) throw;
-    throw InputError(
-        error.what_is_wrong, error.where,
-        fmt::format("{} Look at the units first: {}", error.remedy, doubts.front().what()));
-  }
 }
 
 void validate_stages(const Document& document) {

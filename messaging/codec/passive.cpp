@@ -183,8 +183,8 @@ void decode(Bytes bytes, const Description& body, const PassiveStep& asked, Pass
   if (!recorded) record.fail("is missing");
   if (!compliant) to.compliance.clear();
   const std::size_t values = pressed_values(asked, body);
-  const bool bound = to.compliance.size() == values;  // its diagonal alone
-  check(to.compliance, bound ? values : values * values, false, FieldPath{&path, "compliance"});
+  check(to.compliance, to.bounds(values) ? values : values * values, false,
+        FieldPath{&path, "compliance"});
 }
 
 }  // namespace abut

@@ -218,7 +218,7 @@ class Words(Install):
             "abut run --set time.end=1 scene.yaml --set bodies.left.launch=c", "abut-solver --p")
         self.assertEqual(verbs, {*verbs_of(BUILD / "bin"), "--help", "--version"})
         self.assertEqual(options, {"--help", "--set", "--out", "--local", "--quiet", "--force",
-                                   "--insecure", "--trace", "--await", "--keys",
+                                   "--grace", "--insecure", "--trace", "--await", "--keys",
                                    "--patience"})
         self.assertLessEqual({"scene.yaml", "prefix"}, scenes)
         self.assertNotIn("notes.txt", scenes)

@@ -31,7 +31,10 @@ class Keys:
     def __getitem__(self, name):
         return self.values[name]
 
-    positive = number = __getitem__
+    def positive(self, name, unit=""):
+        return self.values[name]
+
+    number = positive
 
 
 class Wrong(plate()):
