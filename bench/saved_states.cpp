@@ -77,7 +77,7 @@ void run(int edge, int repeats, const char* name, const std::string& law) {
     body->restore();
   });
   const double saving = least(repeats, [&] { body->save(); });
-  const double alone = forward - saving, restoring = again - alone;
+  const double alone = forward - saving, restoring = std::max(0.0, again - alone);
   const double cells = double(edge) * edge * edge;
   fmt::print(
       "{:>22}: step {:6.1f} ns an element, save {:5.1f}, restore {:5.1f}: {:.3f} of the "

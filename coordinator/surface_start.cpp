@@ -166,8 +166,8 @@ void check_averages(const NamedSurface& one, const NamedSurface& other, const st
                                "overlaps {} by {:.3g} m",
                                one.name, other.name, overlap),
                    where,
-                   fmt::format("Move a body with initial.position by {:.3g} m more, or make the "
-                               "mesh finer{}.",
+                   fmt::format("Move a body with initial.position by {:.3g} m more, make the mesh "
+                               "finer{}.",
                                overlap, adjusting(where)));
 }
 
