@@ -382,8 +382,7 @@ bool Controller::Attempt::converged() const {
 int Controller::windows_to_fly() {
   const double whole = clock_.whole_windows(free_flight_horizon(joints_, bodies_));
   int most = flight_.limit;
-  if (scene_.output.field_output) {
-    const int every = scene_.output.field_output->every;
+  if (const int every = scene_.output.looked_at_every(); every > 0) {
     most = std::min(most, every - static_cast<int>(clock_.windows() % every));
   }
   most = count_within(std::min(whole, most_substeps * bodies_.shortest_step() / scene_.time.window),

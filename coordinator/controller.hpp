@@ -159,7 +159,7 @@ class Controller {
   bool ends_before(const TimeWindow& window);
   void stop();
   void state(Archive& archive);
-  void totals(Archive& archive);
+  double totals(Archive& archive);
   void memory(Archive& archive);
   void counts(Archive& archive);
   void tell_start();  // of a run that goes on

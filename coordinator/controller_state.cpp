@@ -42,7 +42,7 @@ void Controller::load_end(std::span<const std::byte> bytes,
   introduce();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
-  totals(archive);
+  end_.given_up.largest = totals(archive);
   passive_.begin_stage();
   std::vector<Role> roles;  // chosen for the schemes of this stage
   for (const Joint& joint : joints_) roles.push_back(joint.role);
@@ -95,14 +95,16 @@ void Controller::memory(Archive& archive) {
   if (event_) event_->state(archive);
 }
 
-/// What a run counts over all its stages.
-void Controller::totals(Archive& archive) {
+/// What a run counts over all its stages; the largest energy [J] so far, where that of the stages
+/// before is in end_.
+double Controller::totals(Archive& archive) {
   bodies_.counts(archive);
   archive.field("contact_windows", end_.contact_windows);
   double largest = archive.writing() ? given_up().largest : 0.0;
+  archive.field("largest_before", end_.given_up.largest);
   archive.field("largest", largest);
-  if (!archive.writing()) end_.given_up.largest = largest;
   passive_.totals(archive);
+  return largest;
 }
 
 /// What a stage counts and tells at its end, of all its windows; and how long these were, which a

@@ -224,8 +224,8 @@ Estimate estimate(const Scene& scene, std::span<const Description* const> bodies
   if (joints == 0) {  // the begin, and free flight as far as one request goes
     std::int64_t at_once =
         windows_at_once(scene.time.window, scene.output.records_per_window, known);
-    if (scene.output.field_output)
-      at_once = std::min<std::int64_t>(at_once, scene.output.field_output->every);
+    if (const int every = scene.output.looked_at_every(); every > 0)
+      at_once = std::min<std::int64_t>(at_once, every);
     e.exchanges_low = e.exchanges_high = count * (1 + (e.windows + at_once - 1) / at_once);
   }
   if (watched_only(scene)) e.exchanges_low = e.exchanges_high = count * (1 + e.windows);

@@ -32,9 +32,10 @@ constexpr const char* state_of_paraview = "fields.pvsm";
 constexpr const char* trace_file = "trace.json";
 constexpr std::array<const char*, 6> of_its_end{summary_file, "report.html", "film.mp4",
                                                 "film.gif",   "picture.png", "progress.json"};
-constexpr std::array<const char*, 10> of_its_way{
-    "history.csv",     "closed_form.csv",  "events.jsonl",        list_of_fields, state_of_paraview,
-    latest_checkpoint, earlier_checkpoint, unfinished_checkpoint, trace_file,     scene_file};
+constexpr std::array<const char*, 11> of_its_way{
+    "history.csv",         "closed_form.csv", "measures.csv",    "events.jsonl",
+    list_of_fields,        state_of_paraview, latest_checkpoint, earlier_checkpoint,
+    unfinished_checkpoint, trace_file,        scene_file};
 
 std::vector<const char*> run_files() {
   std::vector<const char*> all(of_its_end.begin(), of_its_end.end());

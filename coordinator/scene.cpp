@@ -159,12 +159,30 @@ void FieldOutputSpec::fields(Fields& f) {
              between(1, 1000000));
 }
 
+void MeasuresOutputSpec::fields(Fields& f) {
+  f.required(
+      "of", of, "",
+      "names of measures that a body tells, with body.NAME. before them, as summary.json has "
+      "them at the end: body.left.gauge.stress.xx of a port that is one node");
+  f.optional("every", every, "", "number of windows from one row to the next", between(1, 1000000));
+}
+
+int OutputSpec::looked_at_every() const {
+  const int fields_every = field_output ? field_output->every : 0;
+  return std::gcd(fields_every, measures ? measures->every : 0);
+}
+
 void OutputSpec::fields(Fields& f) {
   f.optional("records_per_window", records_per_window, "",
              "number of rows of history.csv per controller window", between(1, 1000));
   f.optional_section("fields", field_output,
                      "fields of all bodies for ParaView (fields.pvd): at the begin, after every so "
                      "many windows and at the end; bodies fly free no further than that at once");
+  f.optional_section(
+      "measures", measures,
+      "measures of bodies over time (measures.csv), as the stress at a gauge: at the "
+      "begin, after every so many windows and at the end; bodies fly free no further "
+      "than that at once");
   f.choice("force_filter", force_filter,
            "filter behind which the largest contact force is the measure "
            "contact.INTERFACE.force_peak_filtered");

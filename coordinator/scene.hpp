@@ -15,9 +15,8 @@
 #include "base/yaml_document.hpp"
 #include "contract/port_role.hpp"
 #include "contract/subdomain.hpp"
-#include "coordinator/checkpoint_spec.hpp"
-#include "coordinator/force_filter_spec.hpp"
 #include "coordinator/interface_spec.hpp"
+#include "coordinator/output_spec.hpp"
 #include "coordinator/scene_meta.hpp"
 #include "coordinator/ssh_launch.hpp"
 #include "coordinator/tie_kernel_spec.hpp"
@@ -103,20 +102,6 @@ struct SchwarzSpec {
   std::optional<TieKernelSpec> ties;  // absent: its defaults
   OnNonconvergence on_nonconvergence = OnNonconvergence::passive;
   double energy_guard = 0.01;  // of the most energy in motion: growth that ends the run
-  void fields(Fields& f);
-};
-
-struct FieldOutputSpec {
-  int every = 1;  // windows
-  void fields(Fields& f);
-};
-
-struct OutputSpec {
-  int records_per_window = 1;                   // rows of history.csv per controller window
-  std::optional<FieldOutputSpec> field_output;  // key fields; absent: no body is asked
-  std::optional<ForceFilterSpec> force_filter;  // absent: no measure of filtered forces
-  std::optional<double> steady_after;           // [s] absent: no measure of ripple
-  std::optional<CheckpointSpec> checkpoint;     // absent: one alone, where a signal ends the run
   void fields(Fields& f);
 };
 

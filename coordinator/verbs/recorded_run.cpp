@@ -26,6 +26,7 @@
 #include "coordinator/record/csv_history.hpp"
 #include "coordinator/record/event_log.hpp"
 #include "coordinator/record/expectations.hpp"
+#include "coordinator/record/measure_history.hpp"
 #include "coordinator/record/measure_recorder.hpp"
 #include "coordinator/record/progress_file.hpp"
 #include "coordinator/record/progress_line.hpp"
@@ -204,6 +205,11 @@ StageEnd record_stage(RunPlan& plan, const RunOptions& options, const fs::path& 
   if (const std::optional<FieldOutputSpec>& wanted = scene.output.field_output)
     observers.push_back(&fields.emplace(directory, placement.pointers(), wanted->every,
                                         opening_of(from, "fields")));
+  std::optional<MeasureHistory> measured;
+  if (const std::optional<MeasuresOutputSpec>& wanted = scene.output.measures)
+    observers.push_back(&measured.emplace(directory, placement.pointers(), wanted->of,
+                                          wanted->every, units,
+                                          opening_of(from, "measure_history")));
   if (spans != nullptr) observers.push_back(spans);
   // A summary says "completed" when all other files are.
   observers.insert(observers.end(), {&summary, &to_monitor});

@@ -119,6 +119,15 @@ std::string pressed_in_words(double over, bool statics) {
                      statics ? "or at once where it goes passively" : "without a passive form");
 }
 
+/// The form of a surface that may touch, and what its mass, further inside, leaves of the inertia.
+std::string massless_words(const FeModel& model) {
+  std::string words = ", its surface has no mass where it may touch";
+  if (model.inertia_left() < 1.0)
+    words += fmt::format(", which leaves {:.0f} % of its moments of inertia",
+                         100.0 * model.inertia_left());
+  return words;
+}
+
 }  // namespace
 
 std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
@@ -173,6 +182,8 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
     parts.rung += pressed_in_words(*parts.pressed_over, spec.integrates(SchemeKind::statics));
   if (parts.massive_surface)
     parts.rung += ", its surface has mass, lumped: contact in its passive form";
+  else if (model.mesh().dim > 1 && !model.massless().empty())
+    parts.rung += massless_words(model);
   if (const std::string why = spec.why_general(); !why.empty())
     parts.rung += " in place of the bars' own core, for " + why;
   MakeWatch watch;  // the tangent of linear bodies stays

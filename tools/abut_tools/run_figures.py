@@ -5,6 +5,7 @@ import math
 from abut_tools.run_folder import Run
 from abut_tools.tables import (COLOURS, Figure, colour_of, less, plus, since_begin, sum_of,
                                with_jumps)
+from abut_tools.units import measure_unit
 
 MOST_CURVES = 8      # that the eye tells apart
 MOST_BODIES = 6      # with a figure of energies each
@@ -263,6 +264,26 @@ def energy_error_figure(run: Run) -> Figure:
     return figure
 
 
+# ---- measures over time ------------------------------------------------
+
+
+def measure_figures(run: Run) -> list[Figure]:
+    """What the scene asks for by output.measures: a figure for every unit."""
+    figures = {}
+    for name in run.measured.columns if run.measured else ():
+        if name == "time":
+            continue
+        unit = measure_unit(name)
+        figure = figures.setdefault(
+            unit, Figure(f"measures_{len(figures)}", f"Measures{f' [{unit}]' if unit else ''}",
+                         "measure", unit))
+        figure.add(name.removeprefix("body."), COLOURS[len(figure.curves) % len(COLOURS)],
+                   run.measured["time"], run.measured[name])
+    if len(figures) == 1:
+        next(iter(figures.values())).title = "Measures"
+    return list(figures.values())
+
+
 # ---- interfaces ------------------------------------------------------------
 
 
@@ -287,7 +308,7 @@ def interface_figures(run: Run) -> list[Figure]:
 def figures_of(run: Run) -> list[Figure]:
     figures = (port_figures(run) + joint_figures(run) + [reaction_figure(run)] +
                vector_figures(run) + [mean_velocity_figure(run)] + energy_figures(run) +
-               [energy_error_figure(run)] + interface_figures(run))
+               [energy_error_figure(run)] + measure_figures(run) + interface_figures(run))
     for figure in figures:
         figure.unit = run.units.word(figure.unit)
     return [figure for figure in figures if figure.curves]

@@ -19,6 +19,7 @@ class RunView:
         self.summary, self.history, self.exact = summary, history, exact
         self.events = events or []
         self.units = Units(summary.get("units"))
+        self.measured = None  # measures over time, where the scene asks for some
 
     def title(self) -> str:
         return self.summary.get("title") or "Run"
@@ -89,7 +90,8 @@ class Run(RunView):
 
     def __init__(self, folder: Path):
         paths = {name: folder / name
-                 for name in ("summary.json", "history.csv", "closed_form.csv", "events.jsonl")}
+                 for name in ("summary.json", "history.csv", "closed_form.csv", "measures.csv",
+                              "events.jsonl")}
         there = {name for name, path in paths.items() if is_there(path)}
         if not there & {"summary.json", "history.csv"}:
             raise ToolError(
@@ -111,3 +113,5 @@ class Run(RunView):
         if "events.jsonl" in there:
             events = read_events(paths["events.jsonl"])
         super().__init__(summary, history, exact, events)
+        if "measures.csv" in there:
+            self.measured = read_table(paths["measures.csv"])
