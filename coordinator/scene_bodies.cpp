@@ -13,7 +13,6 @@
 #include "base/input_errors.hpp"
 #include "coordinator/coupling/joint.hpp"
 #include "coordinator/everything.hpp"
-#include "coordinator/record/measure_names.hpp"
 #include "coordinator/scene.hpp"
 #include "coordinator/scene_times.hpp"
 
@@ -135,20 +134,6 @@ void validate_members(const Scene& scene, std::span<const Description* const> bo
   }
 }
 
-/// Of bodies that are not known yet the run will tell.
-void validate_measures(const Scene& scene, std::span<const Description* const> bodies,
-                       const Document& document) {
-  if (!scene.output.measures || std::ranges::find(bodies, nullptr) != bodies.end()) return;
-  const std::vector<std::string> told = told_measures(bodies);
-  const std::vector<std::string>& of = scene.output.measures->of;
-  for (std::size_t i = 0; i < of.size(); ++i)
-    if (std::ranges::find(told, of[i]) == told.end())
-      throw InputError(
-          fmt::format("names '{}', which no body tells", of[i]),
-          document.where(fmt::format("output.measures.of[{}]", i)),
-          "Name one as summary.json of a run has it: body.NAME. and what it measures.");
-}
-
 }  // namespace
 
 void validate_bodies(const Scene& scene, std::span<const Description* const> bodies,
@@ -167,7 +152,6 @@ void validate_bodies(const Scene& scene, std::span<const Description* const> bod
   if (scene.output.field_output && std::all_of(bodies.begin(), bodies.end(), silent))
     errors.add({"asks for fields, but no body of the scene has any",
                 document.where("output.fields"), "Leave out output.fields."});
-  errors.gather([&] { validate_measures(scene, bodies, document); });
   errors.raise();
 }
 

@@ -77,6 +77,20 @@ void check_units(const Document& document) {
       "Give it a unit, or say what numbers without one are in: units: SI, or units: mm t s.");
 }
 
+/// Of bodies that are not known yet the run will tell.
+void validate_measures(const Scene& scene, std::span<const Description* const> bodies,
+                       const Document& document) {
+  if (!scene.output.measures || std::ranges::find(bodies, nullptr) != bodies.end()) return;
+  const std::vector<std::string> told = told_measures(bodies);
+  const std::vector<std::string>& of = scene.output.measures->of;
+  for (std::size_t i = 0; i < of.size(); ++i)
+    if (std::ranges::find(told, of[i]) == told.end())
+      throw InputError(
+          fmt::format("names '{}', which no body tells", of[i]),
+          document.where(fmt::format("output.measures.of[{}]", i)),
+          "Name one as summary.json of a run has it: body.NAME. and what it measures.");
+}
+
 /// Of the fields that a scene wants, by body.
 std::vector<FieldSize> field_sizes(const Scene& scene, const Placement& placement) {
   std::vector<FieldSize> sizes(placement.bodies.size());
@@ -139,6 +153,7 @@ Validated validate_all(const Scene& scene, const Document& document, const Place
                        bool processes) {
   const std::vector<const Description*> bodies = placement.descriptions();
   validate_bodies(scene, bodies, document);
+  validate_measures(scene, bodies, document);
   if (processes)
     check_frames(scene, bodies, field_sizes(scene, placement), Limits{}.frame_bytes, document);
   std::vector<Estimate::Ties> ties;
