@@ -7,6 +7,7 @@ usage: test_stages.py ABUT ROOT
 
 import csv
 import itertools
+import re
 import sys
 
 sys.dont_write_bytecode = True
@@ -221,6 +222,20 @@ class Fits(SystemTest):
                 after = self.summary(out)["measures"]["body.b0.floor.reaction.y"]
                 self.assertAlmostEqual(after / floor, 1.0, delta=1.0e-3)
 
+    def test_a_summary_counts_all_stages(self):
+        text = pressed_stack(", interference: {over: 0}", MOTION)
+        before = text[:text.index("\nstages:") + 1]
+        counts = []
+        for scene in (before, text):
+            done, out = self.run_scene(scene, *PASSIVELY)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = self.summary(out)
+            self.assertEqual(told["contact_windows"], told["measures"]["contact_windows"])
+            counts.append((told["accuracy"]["given_up"]["passive_windows"], told["exchanges"]))
+        for first, both in zip(*counts):
+            self.assertGreater(first, 0)
+            self.assertGreater(both, first)
+
     def test_a_load_presses_on_from_stage_to_stage(self):
         """Of modes or cells below; the second stage of motion changes nothing, or the schemes."""
         explicit, newmark = "central_difference: {step: 1.0e-5}", "newmark: {step: 1.0e-5}"
@@ -248,6 +263,18 @@ class Fits(SystemTest):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("body 'low': goes on with modes of lumped mass, and its state is of "
                       "averaged mass. Give its integrator the same mass in all stages", done.stderr)
+
+    def test_a_later_stage_is_refused_before_the_first_window_by_its_line(self):
+        text = pressed_stack(", interference: {over: 0}", MOTION.replace("1.0e-5", "1.0"))
+        path, out = self.folder / "fit.yaml", self.folder / "fit"
+        for verb in ("check", "run"):
+            path.write_text(text, encoding="utf-8")
+            done = self.abut(verb, str(path), *(("--out", str(out)) if verb == "run" else ()))
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn("(stage ", done.stderr)
+            line = int(re.search(r"fit\.yaml:(\d+): ", done.stderr)[1])
+            self.assertIn("1.0", text.splitlines()[line - 1])
+            self.assertFalse(out.exists())
 
     def test_bodies_of_no_stage_have_no_statics_before(self):
         text = pressed_bars(", after_statics: true", ("newmark: {step: 1.0e-5}",) * 2)
