@@ -130,6 +130,46 @@ TEST(StartsOfSurfaces, TellAllPlaces) {
 
 /// Blocks that the scene puts under a pressure of 2000 Pa by displacements, which a wall and a
 /// traction hold: their surfaces without mass spring into each other at the first instant.
+/// A block in a floor, of which one side each may touch.
+std::string sole_in_floor(double y, const std::string& scheme, const std::string& contact) {
+  return fmt::format(R"(time: {{end: 1.0, window: 0.5}}
+bodies:
+  block:
+    model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.2, 0.1], elements: [4, 2]}}}}}}}}
+    material: {{linear_elastic: {{youngs_modulus: 1.0e6, poissons_ratio: 0.3, density: 1000.0}}}}
+    integrator: {{{}: {{step: 0.5}}}}
+    constraints: {{held: {{on: top, fixed: true}}}}
+    initial: {{position: [0.0, {}]}}
+    ports: {{sole: bottom}}
+  floor:
+    model:
+      rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [4.0, 1.0], elements: [1, 1]}}}}}}
+    initial: {{position: [-2.0, -1.0]}}
+    ports: {{face: top}}
+{})",
+                     scheme, number(y), contact);
+}
+
+/// Sides that are flat have boxes without height: those that have passed each other at the start
+/// did not overlap, and bodies went through each other without a word.
+TEST(StartsOfSurfaces, OfSidesThatHavePassedEachOtherAreSeenByEverything) {
+  const std::string all = "contact: {everything: {}}\n",
+                    one = "interfaces: {met: {sides: [block.sole, floor.face], contact: {}}}\n";
+  for (const double depth : {1.0e-5, 1.0e-3, 0.02, 0.045}) {
+    SCOPED_TRACE(depth);
+    const std::string told = refusal([&] { run_text(sole_in_floor(-depth, "newmark", all)); });
+    EXPECT_NE(told.find("its sides overlap by"), std::string::npos) << told;
+    EXPECT_NE(told.find("write the pair under interfaces"), std::string::npos) << told;
+  }
+  // Statics press it out at once.
+  const auto pressed = run_text(sole_in_floor(-1.0e-3, "quasi_static", all));
+  const auto named = run_text(sole_in_floor(-1.0e-3, "quasi_static", one));
+  ASSERT_TRUE(pressed->completed());
+  EXPECT_LT(named->measure("body.block.held.reaction.y"), -1.0);
+  EXPECT_EQ(pressed->measure("body.block.held.reaction.y"),
+            named->measure("body.block.held.reaction.y"));
+}
+
 TEST(StartsOfSurfaces, ThatAreStressedAreInContact) {
   const auto run = run_text(R"yaml(meta: {title: stressed}
 time: {begin: 0.0, end: 0.02, window: 1.0e-3}
