@@ -144,15 +144,20 @@ std::vector<PortPair> BroadPhase::overlapping() const {
 }
 
 std::vector<PortPair> BroadPhase::near_at_start(const Bodies& bodies) {
+  constexpr double of_facet = 0.01;  // far less than bodies are thick, whose far sides do not meet
+  double finest = std::numeric_limits<double>::infinity();
+  for (const Surface& port : ports_)
+    if (port.open > 0.0) finest = std::min(finest, port.open);
   const auto make_boxes = [&](double widths) {
     boxes_.clear();
     for (const Surface& port : ports_) {
       const PortGeometry& surface = bodies.port(port.side).geometry;
-      boxes_.push_back(box_of(surface.points, surface.points, index(surface.dim),
-                              0.5 * margin_ + widths * port.open));
+      const double more = port.open > 0.0 ? widths * finest : 0.0;
+      boxes_.push_back(
+          box_of(surface.points, surface.points, index(surface.dim), 0.5 * margin_ + more));
     }
   };
-  make_boxes(1.0);
+  make_boxes(of_facet);
   passed_ = boxes_that_overlap();
   make_boxes(0.0);
   const std::vector<Places> touching = boxes_that_overlap();

@@ -31,8 +31,8 @@ class BroadPhase {
   // Pairs are told in the order of their ports.
 
   /// Whose boxes overlap in the reference configuration, those of surfaces that are not closed
-  /// larger by the width of a facet: flat ones have boxes without height, and may have passed each
-  /// other there. `near` tells of all of these, whatever their boxes are then.
+  /// larger by a hundredth of the smallest facet's width: flat ones have boxes without height, and
+  /// may have passed each other there. `near` tells of all of these, whatever their boxes are then.
   std::vector<PortPair> near_at_start(const Bodies& bodies);
   /// That may come together within `time` [s] from the end of the last replies.
   std::vector<PortPair> near(const Bodies& bodies, double time);
@@ -58,7 +58,7 @@ class BroadPhase {
   std::vector<std::vector<int>> place_;  // in ports_, by body and port; -1: no surface
   double margin_ = 0.0;                  // [m] by which rows of any pair may press early
   std::vector<Box> boxes_;
-  std::vector<Places> passed_;  // of the start, by the width of a facet alone
+  std::vector<Places> passed_;  // of the start, whose boxes had to be larger
 };
 
 }  // namespace abut
