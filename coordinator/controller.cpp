@@ -155,6 +155,7 @@ void Controller::start() {
     fill_reports(true);
     narrator_.window({instant, bodies_.responses(), reports_, 0, {}});
     events_.engage_sprung(clock_.time());
+    if (broad_phase_.has_open_surfaces()) look_for_overlaps();  // which boxes tell nothing of
   }
   want_opening_accelerations(wants_accelerations());
   unite_start();

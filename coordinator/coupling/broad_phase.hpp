@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <span>
@@ -26,6 +27,10 @@ class BroadPhase {
   BroadPhase(const Bodies& bodies, std::span<const Joint> joined);
 
   bool empty() const { return ports_.empty(); }
+  /// Flat ones for instance, which may have passed each other.
+  bool has_open_surfaces() const {
+    return std::ranges::any_of(ports_, [](const Surface& port) { return port.open > 0.0; });
+  }
   void join(const PortPair& pair);
 
   // Pairs are told in the order of their ports.

@@ -161,6 +161,10 @@ TEST(StartsOfSurfaces, OfSidesThatHavePassedEachOtherAreSeenByEverything) {
     EXPECT_NE(told.find("its sides overlap by"), std::string::npos) << told;
     EXPECT_NE(told.find("write the pair under interfaces"), std::string::npos) << told;
   }
+  // Deeper ones are told at the begin.
+  const auto deep = run_text(sole_in_floor(-0.05, "newmark", all));
+  ASSERT_EQ(deep->end.overlaps.size(), 1u);
+  EXPECT_NEAR(deep->end.overlaps[0].depth, 0.05, roundoff(100.0, 0.05));
   // Statics press it out at once.
   const auto pressed = run_text(sole_in_floor(-1.0e-3, "quasi_static", all));
   const auto named = run_text(sole_in_floor(-1.0e-3, "quasi_static", one));
