@@ -78,7 +78,7 @@ class Measures(SystemTest):
         run = self.start_run()
         until = time.monotonic() + 20.0
         while run.poll() is None and time.monotonic() < until:
-            if list(self.out.glob("checkpoint*")):
+            if (self.out / "checkpoint.abut").is_file():
                 break
             time.sleep(0.002)
         run.send_signal(signal.SIGKILL)
