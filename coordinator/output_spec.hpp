@@ -29,7 +29,8 @@ struct OutputSpec {
   std::optional<ForceFilterSpec> force_filter;  // absent: no measure of filtered forces
   std::optional<double> steady_after;           // [s] absent: no measure of ripple
   std::optional<CheckpointSpec> checkpoint;     // absent: one alone, where a signal ends the run
-  /// Windows after which bodies are looked at, at most: those that fly free stop there; 0: never.
+  /// Number of windows between the places where bodies that fly free stop, so that fields and
+  /// measures find them at each of theirs: the greatest common divisor of both; 0: none is asked.
   int looked_at_every() const;
   void fields(Fields& f);
 };

@@ -95,8 +95,10 @@ bool OverlapSearch::meant(std::pair<int, int> pair, std::span<const Joint> joint
     joined = true;
   }
   if (joined) return false;
-  const std::vector<int> whole = tied_wholes(joints, static_cast<int>(hulls_.size()));
-  if (all_touch && whole[index(pair.first)] != whole[index(pair.second)]) return false;
+  if (all_touch) {
+    const std::vector<int> whole = tied_wholes(joints, static_cast<int>(hulls_.size()));
+    if (whole[index(pair.first)] != whole[index(pair.second)]) return false;
+  }
   BodyHull one = hulls_[pair.first], other = hulls_[pair.second];
   pose(one, {});
   pose(other, {});
