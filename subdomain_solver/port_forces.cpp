@@ -16,8 +16,16 @@ constexpr double force_rounding = 1.0e-6;
 
 }  // namespace
 
-void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substeps& grid) {
+void PortForces::join(std::size_t port, const std::vector<std::size_t>& massless) {
+  joined_.push_back(port);
+  for (const std::size_t place : massless) light_.push_back(map_.first(port) + place);
+}
+
+void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substeps& grid,
+                        std::span<const double> light_before) {
   grid_ = grid;
+  light_before_.assign(light_before.begin(), light_before.end());
+  light_before_.resize(light_.size(), 0.0);
   forces_.clear();
   swings_.clear();
   ends_.clear();
@@ -103,6 +111,29 @@ void PortForces::add(const Waveform& imposed, const double* values, bool first, 
   }
 }
 
+void PortForces::light_means(int i, std::vector<double>& out) const {
+  out.assign(light_.size(), 0.0);
+  if (acts())
+    for (std::size_t k = 0; k < out.size(); ++k)
+      out[k] = forces_[index(i) * map_.values() + light_[k]];
+}
+
+/// What has no mass would jump with forces that are constant in steps, and each jump would take
+/// half of the change of the force, times that of the place, from the pair. With the slope of the
+/// last two means it jumps by what the slope changes  [M.164].
+void PortForces::add_slopes(double time, std::vector<double>& out) const {
+  const int i = std::min(substep_, grid_.count);
+  if (i == 0) return;
+  const double begin = i == 1 ? grid_.begin : grid_.time(i - 1);
+  const double share = std::clamp((time - begin) / grid_.length(i), 0.0, 1.0);
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    const double before = i == 1 ? light_before_[k]
+                                 : forces_[index(i - 1) * map_.values() + light_[k]];
+    double& force = out[light_[k]];
+    force += (share - 0.5) * (force - before);
+  }
+}
+
 void PortForces::at(double time, std::vector<double>& out) const {
   out.assign(map_.values(), 0.0);
   if (forces_.empty()) return;
@@ -123,6 +154,7 @@ void PortForces::at(double time, std::vector<double>& out) const {
   for (const std::size_t port : joined_)
     std::copy_n(row(std::min(substep_, grid_.count)) + map_.first(port), map_.width(port),
                 out.begin() + static_cast<std::ptrdiff_t>(map_.first(port)));
+  add_slopes(time, out);
 }
 
 void PortForces::add(double time, std::span<const double> q, Vector& force) const {

@@ -16,16 +16,22 @@ namespace abut {
 /// values at their ends, equal to those of the waveform where it is sampled there, else means over
 /// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
 /// of PortMap. On ports that are joined, forces are constant in every substep: means over it
-/// [M.107].
+/// [M.107]; on nodes without mass, linear in it [M.164].
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.
   explicit PortForces(const PortMap& map) : map_(map) {}
 
-  /// What is imposed over a window that the body divides like this.
-  void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid);
-  /// From now on, forces on this port are those of joined sides.
-  void join(std::size_t port) { joined_.push_back(port); }
+  /// What is imposed over a window that the body divides like this. light_before [N] (light): the
+  /// means over the substep before it.
+  void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid,
+              std::span<const double> light_before = {});
+  /// From now on, forces on this port are those of joined sides; massless: those of its values,
+  /// by their place in the port, that belong to nodes without mass.
+  void join(std::size_t port, const std::vector<std::size_t>& massless);
+  const std::vector<std::size_t>& light() const { return light_; }  // these values, of all ports
+  /// [N] (light) over substep i of the window; zeros where nothing is imposed.
+  void light_means(int i, std::vector<double>& out) const;
   /// The substep that begins, from 1: of joined ports at() tells its forces.
   void enter(int substep) { substep_ = substep; }
   bool acts() const { return !forces_.empty(); }
@@ -48,6 +54,7 @@ class PortForces final : public Load {
   void add_sampled(const Waveform& imposed, std::size_t port, bool first);
   bool joined(std::size_t port) const { return std::ranges::find(joined_, port) != joined_.end(); }
   void add_constant(const Waveform& imposed, std::size_t port, bool first);
+  void add_slopes(double time, std::vector<double>& out) const;
   void add_swing(const Waveform& imposed, double now, std::size_t row, std::vector<double>& to,
                  std::size_t size);
   void add(const Waveform& imposed, const double* values, bool first, double* row) const;
@@ -62,6 +69,8 @@ class PortForces final : public Load {
   std::vector<double> instant_;
   mutable std::vector<double> now_;
   std::vector<std::size_t> joined_;  // ports
+  std::vector<std::size_t> light_;   // values of joined ports on nodes without mass
+  std::vector<double> light_before_;  // [N] (light)
   int substep_ = 1;
 };
 

@@ -47,6 +47,16 @@ double kicked_ahead(const RigidModel& body, const Motion& motion, Vector& force)
   return body.kinetic(motion.q, std::span(force.data(), index(force.size())));
 }
 
+/// Values of a port, by their place in it, of nodes that have no mass.
+std::vector<std::size_t> massless_values(const Model& model, const NamedNodes& port, int dim) {
+  std::vector<std::size_t> values;
+  std::size_t k = 0;
+  for (const std::int32_t node : port.nodes)
+    for (int i = 0; i < dim; ++i, ++k)
+      if (std::ranges::binary_search(model.massless(), node * dim + i)) values.push_back(k);
+  return values;
+}
+
 }  // namespace
 
 SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<PortNodes>& ports)
@@ -58,7 +68,7 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     std::unique_ptr<PortForces> forces = std::make_unique<PortForces>(*port_map_);
     port_forces_ = forces.get();
     for (std::size_t p = 0; p < ports_.size(); ++p)
-      if (joined_[p]) port_forces_->join(p);
+      if (joined_[p]) port_forces_->join(p, massless_values(*parts_.problem->model, ports_[p], description_.dim));
     if (joins_) description_.can.kernel = true;
     description_.can.impulse = joins_ && !description_.quasi_static;
     places_.assign(port_map_->values(), 0.0);
@@ -238,6 +248,7 @@ void SolidInterior::state_of_motion(Archive& archive) {
   archive.field("begun", state_.begun);
   archive.field("port_force", state_.port_force);
   archive.field("port_work", state_.port_work);
+  archive.field("light_mean", state_.light_mean);
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
 }
@@ -256,7 +267,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
     if (failed) return failed;
   }
   if (port_forces_ != nullptr) {
-    port_forces_->impose(window.request.boundary, window.grid);
+    port_forces_->impose(window.request.boundary, window.grid, state_.light_mean);
     port_forces_->enter(1);
   }
   substep_ = 0;

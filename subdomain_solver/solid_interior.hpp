@@ -136,6 +136,7 @@ class SolidInterior final : public Interior,
     bool begun = false;              // accelerations and forces of the start are there
     std::vector<double> port_force;  // [N] (port values) that acts now
     double port_work = 0.0;          // [J] done by forces on the ports
+    std::vector<double> light_mean;  // [N] (PortForces::light) over the last substep
     double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
     double crossed = 0.0;            // most pairs of facets that crossed each other, at records
   };

@@ -299,7 +299,9 @@ interfaces: {{joint: {{sides: [lower.joint, upper.joint], tied: {{}}}}}}
 
 /// Forces of joints jump from step to step, and surfaces without mass with them: slip is counted
 /// between where steps leave these. Counted from where the jump leads to, what sticks would creep:
-/// contact then did work that was in no account, gained .08 % and lost up to 20 %.
+/// contact then did work that was in no account, gained .08 % and lost up to 20 %. Jumps by the
+/// whole change of the force would take .3 to .9 %, of first order; those by the change of its
+/// slope leave what the explicit or trapezoidal steps of a corner lose, of second order.
 TEST(TiedContact, WhatSticksDoesNotCreepWithForcesOfJoints) {
   for (const char* scheme : {"central_difference", "newmark"}) {
     for (const char* upper : {"fe", "rigid"}) {
@@ -318,10 +320,57 @@ TEST(TiedContact, WhatSticksDoesNotCreepWithForcesOfJoints) {
               lost -= run->measure(fmt::format("body.{}.energy.{}", name, of));
           lost /= up.largest;
           EXPECT_GT(lost, 0.0);
-          EXPECT_LT(lost, 0.012);
+          EXPECT_LT(lost, 6.0e-4);
           if (before > 0.0) {
-            EXPECT_LT(lost, 0.7 * before);
+            EXPECT_LT(lost, 0.3 * before);
           }
+          before = lost;
+        }
+      }
+    }
+  }
+}
+
+/// All of the outside of both halves may touch, so the nodes at the rim of their joint have no
+/// mass. They swing and turn in flight; steps are alike or not.
+std::string halves_in_flight(const char* law, const char* scheme, double step, int ratio) {
+  const auto half = [&](const char* name, double h, const char* cells, double place,
+                        const char* joint) {
+    return fmt::format(
+        R"(  {}:
+    model: {{fe: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.4, 0.3], elements: {}}}}}}}}}
+    material: {{{}: {{youngs_modulus: 2.0e6, poissons_ratio: 0.3, density: 700.0}}}}
+    integrator: {{{}: {{step: {}}}}}
+    initial: {{position: [0.0, {}], velocity_field: ["6*x*y - 2*y", "2*x - 4*y"]}}
+    ports: {{face: {{side: boundary}}, joint: {{side: {}}}}}
+)",
+        name, cells, law, scheme, number(h), place, joint);
+  };
+  return fmt::format(
+      R"(time: {{begin: 0.0, end: 0.04, window: 4.0e-4}}
+bodies:
+  wall:
+    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [1, 1], elements: [1, 1]}}}}}}}}
+    initial: {{position: [9.0, 0.0]}}
+    ports: {{face: {{side: boundary}}}}
+{}{}contact: {{everything: {{}}}}
+interfaces: {{joint: {{sides: [lower.joint, upper.joint], tied: {{}}}}}}
+)",
+      half("lower", step, "[4, 3]", 0.0, "top"),
+      half("upper", step / ratio, "[3, 2]", 0.3, "bottom"));
+}
+
+TEST(TiedContact, RimsWithoutMassTakeNothing) {
+  for (const char* law : {"linear_elastic", "neo_hookean"}) {
+    for (const char* scheme : {"central_difference", "newmark"}) {
+      for (const int ratio : {1, 2}) {
+        SCOPED_TRACE(fmt::format("{} {} 1:{}", law, scheme, ratio));
+        double before = 0.0;
+        for (const double step : {4.0e-4, 2.0e-4}) {
+          const auto run = run_text(halves_in_flight(law, scheme, step, ratio));
+          ASSERT_TRUE(run->completed());
+          const double lost = -run->measure("energy.total.relative_drift_end");
+          printf("RIM %s %s %d %g %.3e\n", law, scheme, ratio, step, lost);
           before = lost;
         }
       }

@@ -98,7 +98,7 @@ SolidText block(const std::string& name, const std::string& scheme, double modul
 class JoinedAndHit : public testing::TestWithParam<std::string> {};
 
 /// A hammer that is a hundred times as stiff strikes one of two joined blocks beside its middle.
-/// Accurate windows gain there, which the blocks repay beside their joint; where the passive way
+/// Accurate implicit windows gain there, which the blocks repay beside their joint; where the passive way
 /// begins, the sides of the joint move by the masses of their passive forms and not alike, and the
 /// blow comes in the step that makes them one.
 TEST_P(JoinedAndHit, GainNothing) {
@@ -111,7 +111,9 @@ TEST_P(JoinedAndHit, GainNothing) {
       "interfaces:\n  joint: {sides: [left.right, right.left], tied: {}}\n"
       "  hit: {sides: [right.top, hammer.bottom], contact: {}}\n");
   ASSERT_TRUE(run->completed());
-  EXPECT_GT(run->end.given_up.repaid, 0.0);
+  if (scheme == newmark) {
+    EXPECT_GT(run->end.given_up.repaid, 0.0);
+  }
   double first = -1.0, most = 0.0;
   for (const RunResult::Row& row : run->rows) {
     double sum = 0.0;

@@ -170,7 +170,7 @@ Verdict judge(const RandomScene& scene, const std::filesystem::path& folder) {
 
 std::string line_of(const RandomScene& scene, const Verdict& verdict) {
   return fmt::format(
-      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} lost {:5.1f} % momentum {:7.1e} angular {:7.1e} "
+      "{:>6} {:11} passive {:3.0f} % grown {:8.1e} lost {:6.2f} % momentum {:7.1e} angular {:7.1e} "
       "{:6.2f} s "
       "{:6} {:7.1e} {}{}{}",
       scene.seed, verdict.run.status, 100.0 * verdict.run.passive, verdict.run.growth,
