@@ -101,10 +101,6 @@ const Vector& SolidInterior::forces_now() {
   if (port_forces_ == nullptr) return change_;
   before_ = state_.port_force;
   leave_out_unknown(before_);
-  // What passed to nodes without mass in the last step, of which they now have the end.
-  if (parts_.scheme.integrator->able().accelerates_without_ties)
-    for (std::size_t k = 0; k < state_.light_mean.size(); ++k)
-      before_[port_forces_->light()[k]] = state_.light_mean[k];
   port_map_->lift(state_.motion.q, before_, change_);
   return change_;
 }

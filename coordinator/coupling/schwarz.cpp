@@ -50,8 +50,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
   const auto& [accelerator, net] = memory_of(island.joints);
   net->begin(window, island, joints, bodies);
   for (Eigen::VectorXd* v : {&it_.x, &it_.g, &it_.s}) v->resize(net->size());
-  const int usual =
-      has_no_inertia(island, bodies) ? Steps::usual_most_of_statics : Steps::usual_most;
+  const int usual = has_no_inertia(island, bodies) ? Steps::usual_most_of_statics
+                    : net->contact_beside_ties()   ? Steps::usual_most_beside_ties
+                                                   : Steps::usual_most;
   Steps steps(*net, *accelerator, {most_.value_or(usual), tolerance_}, bodies);
   if (std::optional<Failed> failed = net->predict(it_.x, bodies)) return *failed;
   for (it_.sweep = 1;; ++it_.sweep) {

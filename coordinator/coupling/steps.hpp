@@ -31,6 +31,8 @@ class Steps {
   /// Of bodies without inertia alone: what moves one as a whole comes from body to body, and
   /// shorter windows change nothing about it.
   static constexpr int usual_most_of_statics = 50;
+  /// Secants have to learn what contact does to every joint of the bodies that it meets.
+  static constexpr int usual_most_beside_ties = 40;
 
   struct Options {
     int max_iterations = usual_most;

@@ -360,7 +360,10 @@ interfaces: {{joint: {{sides: [lower.joint, upper.joint], tied: {{}}}}}}
       half("upper", step / ratio, "[3, 2]", 0.3, "bottom"));
 }
 
-TEST(TiedContact, RimsWithoutMassTakeNothing) {
+/// With forces constant in steps the rims took 10 % in 100 steps and 6 % in 200, whichever the
+/// steps of the other half are. Slopes of the last two means leave the rest of second order where
+/// steps are alike; of a side that steps within the joint's steps half of the means change at once.
+TEST(TiedContact, RimsWithoutMassTakeLittle) {
   for (const char* law : {"linear_elastic", "neo_hookean"}) {
     for (const char* scheme : {"central_difference", "newmark"}) {
       for (const int ratio : {1, 2}) {
@@ -370,7 +373,11 @@ TEST(TiedContact, RimsWithoutMassTakeNothing) {
           const auto run = run_text(halves_in_flight(law, scheme, step, ratio));
           ASSERT_TRUE(run->completed());
           const double lost = -run->measure("energy.total.relative_drift_end");
-          printf("RIM %s %s %d %g %.3e\n", law, scheme, ratio, step, lost);
+          EXPECT_GT(lost, 0.0);
+          EXPECT_LT(lost, ratio == 1 ? 2.0e-3 : 7.5e-2);
+          if (before > 0.0) {
+            EXPECT_LT(lost, (ratio == 1 ? 0.27 : 0.55) * before);
+          }
           before = lost;
         }
       }

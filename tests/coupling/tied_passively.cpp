@@ -98,9 +98,9 @@ SolidText block(const std::string& name, const std::string& scheme, double modul
 class JoinedAndHit : public testing::TestWithParam<std::string> {};
 
 /// A hammer that is a hundred times as stiff strikes one of two joined blocks beside its middle.
-/// Accurate implicit windows gain there, which the blocks repay beside their joint; where the passive way
-/// begins, the sides of the joint move by the masses of their passive forms and not alike, and the
-/// blow comes in the step that makes them one.
+/// Accurate implicit windows gain there, which the blocks repay beside their joint; where the
+/// passive way begins, the sides of the joint move by the masses of their passive forms and not
+/// alike, and the blow comes in the step that makes them one.
 TEST_P(JoinedAndHit, GainNothing) {
   const std::string scheme = GetParam(), newmark = "newmark: {step: 2.0e-5}";
   const auto run = run_scene(
