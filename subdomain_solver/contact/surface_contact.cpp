@@ -383,6 +383,7 @@ bool SurfaceContact::find_compliance(Compliance& give) {
       for (std::size_t t = first_term_[s]; t < first_term_[index(s) + 1]; ++t)
         compliance_(s, r) += terms_[t].factor * along_(number_[index(terms_[t].coordinate)]);
   }
+  soften_unmoved(rows_, compliance_);
   if (rubs_) soften_held(rows_, compliance_);
   complies_ = true;
   version_ = give.version();

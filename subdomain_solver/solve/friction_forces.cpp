@@ -279,6 +279,14 @@ bool by_softness(const Eigen::MatrixXd& a, const Vector& b, std::span<const Fric
 
 }  // namespace
 
+void soften_unmoved(std::span<const FrictionRow> rows, Eigen::MatrixXd& a) {
+  constexpr double least = 1.0e-12;
+  double most = 0.0;
+  for (const FrictionRow& row : rows) most = std::max(most, a(row.first, row.first));
+  for (const FrictionRow& row : rows)
+    if (a(row.first, row.first) < least * most) a(row.first, row.first) += most;
+}
+
 void soften_held(std::span<const FrictionRow> rows, Eigen::MatrixXd& a) {
   constexpr double least = 1.0e-9;
   for (const FrictionRow& row : rows) {

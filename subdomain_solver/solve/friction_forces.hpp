@@ -40,6 +40,11 @@ struct FrictionBuffers {
                                    std::span<const FrictionRow> rows, Vector& force,
                                    FrictionBuffers& buffers);
 
+/// Gives rows that no force opens, as between nodes that supports hold on both sides, the softness
+/// of the one that gives way most: what is left of their weights by rounding, 1e-17 of those of
+/// others, would ask for any force. Less than 1e-12 of the softest is none.
+void soften_unmoved(std::span<const FrictionRow> rows, Eigen::MatrixXd& a);
+
 /// Gives rows whose tangents (or one of them) give way by nothing, as before a support that holds
 /// them, a softness of 1e-9 of their normal's compliance: what slips there anyway rubs all the
 /// same.

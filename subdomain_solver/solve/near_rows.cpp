@@ -16,6 +16,8 @@ namespace {
 constexpr double least_block = 1.0e-2, least_motion = 2.0e-2;
 /// Of a row's normal compliance, as soften_held has it.
 constexpr double least_tangent = 1.0e-9;
+/// Of the largest of all rows, as soften_unmoved has it.
+constexpr double least_normal = 1.0e-12;
 
 double largest_entry(const double* block, int count) {
   double most = 0.0;
@@ -159,6 +161,15 @@ double softness_of(const Square& a, int parts) {
   return stiffest >= soft ? 0.0 : soft;
 }
 
+/// As of one matrix.
+void soften_unmoved(NearBlocks& rows) {
+  double most = 0.0;
+  for (const std::size_t own : rows.own) most = std::max(most, rows.blocks[rows.begins[own]]);
+  for (const std::size_t own : rows.own)
+    if (double& normal = rows.blocks[rows.begins[own]]; normal < least_normal * most)
+      normal += most;
+}
+
 template <int Dim, int Parts>
 NearBlocks blocks_of(std::span<const FrictionRow> rows, std::span<const PressedSide> sides) {
   using Square = Eigen::Matrix<double, Parts, Parts>;
@@ -201,6 +212,7 @@ NearBlocks blocks_of(std::span<const FrictionRow> rows, std::span<const PressedS
     }
     out.offsets.push_back(out.opened.size());
   }
+  soften_unmoved(out);
   return out;
 }
 
