@@ -423,7 +423,7 @@ bool BehindRows::can_press(const DistanceRow& row) const {
 
 DistanceRow BehindRows::completed(DistanceRow row, const Places& places) const {
   const auto& p = row.features.points;
-  row.friction = surfaces_.friction(p[0], p[index(row.features.first_side())]);
+  row.friction = surfaces_.static_friction(p[0], p[index(row.features.first_side())]);
   row.find_tangents(surfaces_.skin().dim);
   row.behind = true;
   if (row.friction > 0.0)

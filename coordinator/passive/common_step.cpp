@@ -85,6 +85,7 @@ CommonStep::CommonStep(const TouchingSurfaces& surfaces, NearRows& near,
       displacements_(index(bodies.count())),
       advanced_(index(bodies.count())),
       impacts_(surfaces, bodies),
+      sliding_(surfaces),
       energies_(index(bodies.count())),
       accounts_(index(bodies.count())),
       port_work_(index(bodies.count())) {
@@ -97,6 +98,7 @@ std::optional<Failed> CommonStep::begin(double time) {
   warm_.clear();
   owed_.clear();
   impacts_.clear();
+  sliding_.clear();
   points_.clear();
   std::ranges::fill(advanced_, 0);
   if (std::optional<Failed> failed = advance(true)) return failed;
@@ -258,6 +260,7 @@ bool CommonStep::prepare_rows() {
     const double share = statics_ ? 1.0 : push_share;  // nothing bounces
     row.push = pushing_ && missing > 0.0 ? std::min(share * missing / h, least) : 0.0;
     row.closing = missing < 0.0 ? -missing / h : -row.push;
+    give_friction(row);
     warm(row);
     if (const auto owed = unclaimed_.extract(row.first_point(0))) row.owed = owed.mapped();
     grown = points_.add(row) || grown;
@@ -461,6 +464,7 @@ void CommonStep::follow_ties() {
 void CommonStep::state(Archive& archive) {
   archive.field("energies", energies_);
   impacts_.state(archive);
+  sliding_.state(archive);
   archive.field("accounts", accounts_);
   archive.field("most", most_);
   field(archive, "places", from_);

@@ -12,6 +12,7 @@
 #include "coordinator/passive/passive_ties.hpp"
 #include "coordinator/passive/rigid_impacts.hpp"
 #include "coordinator/passive/row_impulses.hpp"
+#include "coordinator/passive/sliding_points.hpp"
 
 namespace abut {
 
@@ -82,6 +83,7 @@ class CommonStep {
 
   std::optional<Refusal> iterate();
   bool prepare_rows();
+  void give_friction(DistanceRow& row) const;
   void warm(DistanceRow& row);
   void claim_of_others();
   std::optional<Failed> advance(bool all);
@@ -98,6 +100,7 @@ class CommonStep {
   void see_start();
   double heat_of(const DistanceRow& row) const;
   double speed_of_loads(const DistanceRow& row) const;
+  double speed_of_rest(const DistanceRow& row) const;
   void share_out_work();
   void share_out_ties();
   void count_normal(const DistanceRow& row, PassiveLedger& ledger);
@@ -105,8 +108,8 @@ class CommonStep {
   void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
   static double farthest_of(std::span<const PassiveReply> replies);  // [m]
-  static double own_energy(const BodyRecord& record);              // [J] of a body
-  static double motion_of(std::span<const PassiveReply> replies);  // [J] of all bodies together
+  static double own_energy(const BodyRecord& record);                // [J] of a body
+  static double motion_of(std::span<const PassiveReply> replies);    // [J] of all bodies together
   double length() const { return step_.end - step_.begin; }
 
   const TouchingSurfaces& surfaces_;
@@ -126,18 +129,19 @@ class CommonStep {
   std::vector<DistanceRow> rows_;
   std::size_t prepared_ = 0;  // rows that were given their targets
   bool pushing_ = false;
-  double allowed_ = 0.0;                              // [J] that contact may do in the step
-  double lost_ = 0.0;                                 // [J] by normal contact so far
-  double released_ = 0.0;                             // [J] beside, by rows that part
-  double returned_ = 0.0;                             // [J] and by friction that took too much
-  int softer_ = 0;                                    // solves of these rows so far
-  int looser_ = 0;                                    // than in a first step bodies are held
+  double allowed_ = 0.0;   // [J] that contact may do in the step
+  double lost_ = 0.0;      // [J] by normal contact so far
+  double released_ = 0.0;  // [J] beside, by rows that part
+  double returned_ = 0.0;  // [J] and by friction that took too much
+  int softer_ = 0;         // solves of these rows so far
+  int looser_ = 0;         // than in a first step bodies are held
   double most_way_ = std::numeric_limits<double>::infinity();  // [m] of a point
-  double fine_ = 1.0;                                 // times what fits, in this step
-  std::map<DistanceRow::Key, Eigen::Vector3d> warm_;  // impulses of the last step [N s]
-  std::map<std::int32_t, double> owed_;               // [J] to rows, by their first points
-  std::map<std::int32_t, double> unclaimed_;          // of it, by no row of this step yet
+  double fine_ = 1.0;                                          // times what fits, in this step
+  std::map<DistanceRow::Key, Eigen::Vector3d> warm_;           // impulses of the last step [N s]
+  std::map<std::int32_t, double> owed_;                        // [J] to rows, by their first points
+  std::map<std::int32_t, double> unclaimed_;                   // of it, by no row of this step yet
   RigidImpacts impacts_;
+  SlidingPoints sliding_;
   std::vector<double> energies_;                // [J] by body
   std::vector<double> accounts_;                // [J] by body that nothing explains
   std::vector<std::vector<double>> port_work_;  // [J] by body and port

@@ -37,9 +37,9 @@ struct DistanceRow {
   // at least -pushed, so that they part with so much.
   bool aimed = false;
   double aim = 0.0, approach = 0.0, parting = 0.0;  // [m/s]
-  double pushed = 0.0;              // [N s]
-  std::array<double, 2> rubbed{};   // [N s] along the tangents, by friction with that
-  double heat = 0.0;                // [J] that it took
+  double pushed = 0.0;                              // [N s]
+  std::array<double, 2> rubbed{};  // [N s] along the tangents, by friction with that
+  double heat = 0.0;               // [J] that it took
   double normal_impulse = 0.0;
   std::array<double, 2> tangential_impulse{};
 

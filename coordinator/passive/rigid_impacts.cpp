@@ -75,8 +75,8 @@ void RigidImpacts::aim(DistanceRow& row, const Impact& impact, double begin, dou
 void RigidImpacts::begin(const DistanceRow& row, double approach, double heat) {
   const double restitution = surfaces_.restitution(row.first_point(0), row.first_point(1));
   approach = std::max(0.0, approach);
-  noted_[row.key()] = {approach, restitution * approach, row.normal_impulse, heat,
-                       friction_of(row), row.normal};
+  noted_[row.key()] = {approach, restitution * approach, row.normal_impulse,
+                       heat,     friction_of(row),       row.normal};
 }
 
 void RigidImpacts::follow(const DistanceRow& row, double velocity, double heat) {
@@ -84,8 +84,12 @@ void RigidImpacts::follow(const DistanceRow& row, double velocity, double heat) 
   const double pushed = row.pushed + row.normal_impulse;
   const Eigen::Vector3d before = row.rubbed[0] * row.tangents[0] + row.rubbed[1] * row.tangents[1];
   if (pushed > 0.0)
-    noted_[row.key()] = {row.approach, row.parting, pushed, std::max(0.0, row.heat + heat),
-                         before + friction_of(row), row.normal};
+    noted_[row.key()] = {row.approach,
+                         row.parting,
+                         pushed,
+                         std::max(0.0, row.heat + heat),
+                         before + friction_of(row),
+                         row.normal};
 }
 
 void RigidImpacts::next_step() {

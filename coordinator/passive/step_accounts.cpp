@@ -25,6 +25,11 @@ constexpr double apart = 3.0;
 /// Of the shortest edge: points less deep behind a surface are on it.
 constexpr double rounding_of_places = 1.0e-6;
 
+/// [m/s] of a row's sides along each other.
+double along_of(const DistanceRow& row, std::span<const Eigen::Vector3d> velocities) {
+  return std::hypot(row_velocity(row, velocities, 1), row_velocity(row, velocities, 2));
+}
+
 }  // namespace
 
 /// The account of every body: what its energy gained beside what its ports did.
@@ -72,11 +77,13 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
   for (const DistanceRow& row : rows_) {
     count_normal(row, ledger);
     count_friction(row, ledger);
+    sliding_.see(row, along_of(row, velocities_), speed_of_rest(row));
     if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
     if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
       ledger.deepest = std::max(ledger.deepest, -row.gap);
   }
   impacts_.next_step();
+  sliding_.next_step();
   return std::nullopt;
 }
 
@@ -156,6 +163,16 @@ void CommonStep::see_start() {
     for (std::size_t k = 0; k < dim; ++k)
       start_[p](static_cast<Eigen::Index>(k)) = of[index(at.point) * dim + k];
   }
+}
+
+/// [m/s] of sides along each other that do not slide: by their loads, or by what sweeps leave.
+double CommonStep::speed_of_rest(const DistanceRow& row) const {
+  return std::max(speed_of_loads(row), rounding_of_places * surfaces_.shortest_edge() / length());
+}
+
+void CommonStep::give_friction(DistanceRow& row) const {
+  if (!(row.friction > 0.0)) return;
+  row.friction = sliding_.coefficient(row, along_of(row, start_), speed_of_rest(row));
 }
 
 /// [J] that friction took in the step.

@@ -43,11 +43,13 @@ TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bo
   skin_ = skin_of(surfaces);
   skin_.dim = dim_;
   pair_friction_.assign(ports_.size() * ports_.size(), -1.0);
-  pair_restitution_.assign(pair_friction_.size(), 0.0);
+  pair_static_.assign(pair_friction_.size(), 0.0);
+  pair_restitution_ = pair_static_;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::size_t one = index(groups[k][0]), other = index(groups[k][1]);
     for (const std::size_t place : {one * ports_.size() + other, other * ports_.size() + one}) {
       pair_friction_[place] = pairs[k].friction;
+      pair_static_[place] = pairs[k].static_friction;
       pair_restitution_[place] = pairs[k].restitution;
     }
   }

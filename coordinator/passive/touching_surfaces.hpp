@@ -13,11 +13,11 @@
 
 namespace abut {
 
-/// Two surfaces that may touch, Coulomb's coefficient between them, and the part of their speed
-/// with which they part where neither deforms.
+/// Two surfaces that may touch, Coulomb's coefficient between them, the part of their speed with
+/// which they part where neither deforms, and the coefficient of what sticks, if that is larger.
 struct TouchingPair {
   std::array<Side, 2> sides;
-  double friction = 0.0, restitution = 0.0;
+  double friction = 0.0, restitution = 0.0, static_friction = 0.0;
 };
 
 /// All surfaces of a run that may touch, as one skin: points of all ports, one group per port.
@@ -56,6 +56,12 @@ class TouchingSurfaces {
   double friction(std::int32_t one, std::int32_t other) const {
     return friction_of(skin_.group[one], skin_.group[other]);
   }
+  /// The same of what sticks: as large, or larger.
+  double static_friction(std::int32_t one, std::int32_t other) const {
+    return std::max(
+        friction(one, other),
+        pair_static_[index(skin_.group[one]) * ports_.size() + index(skin_.group[other])]);
+  }
   /// Of two rigid ones.
   double restitution(std::int32_t one, std::int32_t other) const {
     return pair_restitution_[index(skin_.group[one]) * ports_.size() + index(skin_.group[other])];
@@ -83,11 +89,11 @@ class TouchingSurfaces {
   int dim_ = 3;
   Skin skin_;
   std::vector<Point> points_;
-  std::vector<Side> ports_;                 // by group
-  std::vector<double> pair_friction_;       // (groups, groups); negative: they may not touch
-  std::vector<double> pair_restitution_;    // (groups, groups)
-  std::vector<std::uint8_t> stands_;        // (points)
-  std::vector<Eigen::Vector3d> reference_;  // [m]
+  std::vector<Side> ports_;            // by group
+  std::vector<double> pair_friction_;  // (groups, groups); negative: they may not touch
+  std::vector<double> pair_static_, pair_restitution_;  // (groups, groups)
+  std::vector<std::uint8_t> stands_;                    // (points)
+  std::vector<Eigen::Vector3d> reference_;              // [m]
   double shortest_edge_ = 0.0;
 };
 

@@ -109,7 +109,9 @@ void ContactMeasures::read_force(const Waveform& trace, const PortReader& reader
   for (std::size_t i = 1; i < trace.size(); ++i) {
     const double from = trace.time[i - 1];
     const double to = trace.time[i];
-    const double now = reader.compression(trace, i);
+    const double now =
+        taken_back_.sign(trace, readers_[0].port().geometry, readers_[1].port().geometry, i) *
+        reader.compression(trace, i);
     if (!nodal) before = now;
     impulse_ += 0.5 * (before + now) * (to - from);
     pushes_.add(from, to, before, now);
@@ -211,6 +213,7 @@ void ContactMeasures::state(Archive& archive) {
   velocity_.state(archive);
   for (double* value : {&missed_, &impulse_, &peak_, &dissipated_, &gap_min_})
     archive.field("value", *value);
+  taken_back_.state(archive);
   if (errors_) errors_->state(archive);
   if (filter_) filter_->state(archive);
   if (ripple_) ripple_->state(archive);

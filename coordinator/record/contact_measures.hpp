@@ -15,6 +15,7 @@
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
 #include "coordinator/record/pushes.hpp"
+#include "coordinator/record/taken_back.hpp"
 
 namespace abut {
 
@@ -56,6 +57,7 @@ class ContactMeasures {
   ContactTimes times_;
   Pushes pushes_;
   ClosedVelocity velocity_;
+  TakenBack taken_back_;
   double impulse_ = 0.0;     // [N s]
   double peak_ = 0.0;        // [N]
   double dissipated_ = 0.0;  // [J]

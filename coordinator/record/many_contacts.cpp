@@ -11,6 +11,14 @@
 
 namespace abut {
 
+namespace {
+
+std::array<int, 4> key_of(const PairReport& pair) {
+  return {pair.body[0], pair.port[0], pair.body[1], pair.port[1]};
+}
+
+}  // namespace
+
 ManyContacts::ManyContacts(const RunStart& start, int interface)
     : start_(start), index_(interface) {}
 
@@ -29,24 +37,28 @@ void ManyContacts::on_event(const RunEvent& event) {
 void ManyContacts::on_window(const WindowReport& report) {
   for (const PairReport& pair : report.pairs) {
     if (pair.interface != index_) continue;
-    dissipated_[{pair.body[0], pair.port[0], pair.body[1], pair.port[1]}] = pair.dissipated;
+    dissipated_[key_of(pair)] = pair.dissipated;
     const std::size_t k = index(pair.kinematic);
     const PortResponse& reply = report.responses[pair.body[k]].ports[pair.port[k]];
     const std::size_t partner = index(pair.partner[k]);
     if (partner >= reply.reactions.size() || reply.reactions[partner].force.empty()) continue;
     const Reaction& reaction = reply.reactions[partner];
-    read_force(reaction.force, PortReader(start_.bodies[pair.body[k]]->ports[pair.port[k]]));
+    const PortReader reader(start_.bodies[pair.body[k]]->ports[pair.port[k]]);
+    const PortGeometry& other = start_.bodies[pair.body[1 - k]]->ports[pair.port[1 - k]].geometry;
+    read_force(reaction.force, reader, other, taken_back_[key_of(pair)]);
   }
 }
 
 /// A force of steps is that of the step that ends at its time.
-void ManyContacts::read_force(const Waveform& force, const PortReader& reader) {
+void ManyContacts::read_force(const Waveform& force, const PortReader& reader,
+                              const PortGeometry& partner, TakenBack& taken) {
   if (force.f.empty()) return;
   const bool nodal = force.support != ForceSupport::step;
   double before = reader.compression(force, 0);
   if (nodal) peak_ = std::max(peak_, before);
   for (std::size_t i = 1; i < force.size(); ++i) {
-    const double now = reader.compression(force, i);
+    const double now =
+        taken.sign(force, reader.port().geometry, partner, i) * reader.compression(force, i);
     impulse_ += 0.5 * ((nodal ? before : now) + now) * (force.time[i] - force.time[i - 1]);
     peak_ = std::max(peak_, now);
     before = now;
@@ -89,6 +101,13 @@ void ManyContacts::state(Archive& archive) {
     a.field("dissipated", pair.second);
   });
   dissipated_ = {rubbed.begin(), rubbed.end()};
+  std::vector<std::pair<std::array<int, 4>, TakenBack>> taken(taken_back_.begin(),
+                                                              taken_back_.end());
+  list(archive, "taken_back", taken, [](Archive& a, auto& pair) {
+    for (int& side : pair.first) whole(a, "side", side);
+    pair.second.state(a);
+  });
+  taken_back_ = {taken.begin(), taken.end()};
   whole(archive, "closings", closings_);
   whole(archive, "open", open_);
   for (double* value : {&begin_, &end_, &impulse_, &peak_}) archive.field("value", *value);

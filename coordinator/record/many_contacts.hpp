@@ -8,6 +8,7 @@
 #include "coordinator/record/measure_names.hpp"
 #include "coordinator/record/observer.hpp"
 #include "coordinator/record/port_reader.hpp"
+#include "coordinator/record/taken_back.hpp"
 
 namespace abut {
 
@@ -24,14 +25,16 @@ class ManyContacts {
   void state(Archive& archive);
 
  private:
-  void read_force(const Waveform& force, const PortReader& reader);
+  void read_force(const Waveform& force, const PortReader& reader, const PortGeometry& partner,
+                  TakenBack& taken);
 
   const RunStart& start_;
   int index_;
-  std::map<std::array<int, 4>, double> dissipated_;  // [J] so far, by bodies and ports
-  int closings_ = 0, open_ = 0;                      // open_: pairs that press now
-  double begin_ = 0.0, end_ = 0.0;                   // [s] first touch, last release
-  double impulse_ = 0.0, peak_ = 0.0;                // [N s], [N]
+  std::map<std::array<int, 4>, double> dissipated_;     // [J] so far, by bodies and ports
+  std::map<std::array<int, 4>, TakenBack> taken_back_;  // the same
+  int closings_ = 0, open_ = 0;                         // open_: pairs that press now
+  double begin_ = 0.0, end_ = 0.0;                      // [s] first touch, last release
+  double impulse_ = 0.0, peak_ = 0.0;                   // [N s], [N]
 };
 
 }  // namespace abut

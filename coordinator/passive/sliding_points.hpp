@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <set>
+
+#include "base/archive.hpp"
+#include "coordinator/passive/distance_row.hpp"
+#include "coordinator/passive/touching_surfaces.hpp"
+
+namespace abut {
+
+/// Where what sticks has a coefficient of its own, which one a row has in a step: that of sliding
+/// if one of its first points slid in the step before, else that of sticking [M.126]. When the
+/// passive way begins, what moves along faster than what rests slides.
+class SlidingPoints {
+ public:
+  explicit SlidingPoints(const TouchingSurfaces& surfaces) : surfaces_(surfaces) {}
+
+  /// Of a row whose sides move at `along` [m/s] along each other at the step's begin; what rests is
+  /// not faster than `rest` [m/s].
+  double coefficient(const DistanceRow& row, double along, double rest) const;
+  /// A row of a step, whose sides moved at `along` [m/s] in it: what is at the edge of its cone has
+  /// slid, but for what rests: rigid bodies are pressed in some steps and at some points more than
+  /// in and at others.
+  void see(const DistanceRow& row, double along, double rest);
+  /// What see() has noted is for the next step.
+  void next_step();
+  void clear();
+  void state(Archive& archive);
+
+ private:
+  const TouchingSurfaces& surfaces_;
+  std::set<std::int32_t> slid_, noted_;
+  bool fresh_ = true;  // no step has been seen since the passive way began
+};
+
+}  // namespace abut
