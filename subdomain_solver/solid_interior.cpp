@@ -490,7 +490,7 @@ void SolidInterior::finish(std::size_t port, PortResponse& reply) const {
     most = std::max(most, square);
   }
   reply.speed_bound = std::sqrt(most);
-  reply.acceleration_bound = parts_.body_acceleration;
+  reply.acceleration_bound = parts_.body_acceleration ? parts_.body_acceleration(state_.time) : 0.0;
 }
 
 }  // namespace abut

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -57,14 +58,14 @@ class SolidInterior final : public Interior,
     Scheme scheme;
     Motion motion;  // q and v of the start
     std::vector<HeldCoordinates> constraints;
-    std::unique_ptr<Reactions> reactions;            // null: no constraints
-    std::vector<double> frequencies;                 // [Hz] of modal bodies, ascending
-    double body_acceleration = 0.0;                  // [m/s^2] of the body force
-    std::string rung = "fe";                         // for people
-    bool deforms = true;                             // there is stress to tell of
-    std::vector<double> loose;                       // Description::loose
-    std::vector<std::unique_ptr<Load>> whole_loads;  // all mass on the nodes; empty: as problem's
-    const RigidModel* rigid = nullptr;               // the problem's model, of a rigid body
+    std::unique_ptr<Reactions> reactions;             // null: no constraints
+    std::vector<double> frequencies;                  // [Hz] of modal bodies, ascending
+    std::function<double(double)> body_acceleration;  // [m/s^2] of time; null: none
+    std::string rung = "fe";                          // for people
+    bool deforms = true;                              // there is stress to tell of
+    std::vector<double> loose;                        // Description::loose
+    std::vector<std::unique_ptr<Load>> whole_loads;   // all mass on the nodes; empty: as problem's
+    const RigidModel* rigid = nullptr;                // the problem's model, of a rigid body
     bool massive_surface = false;        // it has no layer, and takes obstacles when passive alone
     std::optional<double> pressed_over;  // [s] in which wanted interference grows; absent: none
   };

@@ -26,9 +26,9 @@ double start_value(const ScalarField& field, const std::array<double, 3>& at, in
                    const std::string& where) {
   const double value = field(at, 0.0);
   if (std::isfinite(value)) return value;
-  throw InputError(fmt::format("has no value at ({:g}) m",
-                               fmt::join(at.data(), at.data() + dim, ", ")),
-                   where, "Give an expression with a value at every node of the body.");
+  throw InputError(
+      fmt::format("has no value at ({:g}) m", fmt::join(at.data(), at.data() + dim, ", ")), where,
+      "Give an expression with a value at every node of the body.");
 }
 
 std::array<double, 3> position_of(const Mesh& mesh, std::int32_t node) {
@@ -79,9 +79,7 @@ std::vector<std::unique_ptr<Load>> all_loads(const BodySpec& spec, const Place& 
   if (weightless) return loads;
   VectorField uniform;
   for (int i = 0; i < dim; ++i)
-    uniform[i] = [b = spec.body_force[i]](const std::array<double, 3>&, double) {
-      return b;
-    };
+    uniform[i] = [b = spec.body_force[i]](const std::array<double, 3>&, double) { return b; };
   loads.push_back(body_force(std::move(uniform)));
   return loads;
 }
@@ -102,10 +100,24 @@ std::vector<std::unique_ptr<Load>> make_whole_loads(const BodySpec& spec, const 
   });
 }
 
-double body_acceleration(const BodySpec& spec) {
+std::function<double(double)> body_acceleration(const BodySpec& spec, const Place& place, int dim) {
   double square = 0.0;
   for (const double b : spec.body_force) square += b * b;
-  return std::sqrt(square);
+  std::vector<VectorField> fields;
+  for (const auto& [name, load] : spec.loads)
+    if (!load.acceleration.empty())
+      fields.push_back(
+          field_of(load.acceleration, dim, place.where("loads." + name + ".acceleration")));
+  return [uniform = std::sqrt(square), fields, dim](double time) {
+    double bound = uniform;
+    for (const VectorField& field : fields) {
+      std::array<double, 3> a{};
+      for (int i = 0; i < dim; ++i) a[index(i)] = field[index(i)]({}, time);
+      const double size = std::hypot(a[0], a[1], a[2]);
+      if (std::isfinite(size)) bound += size;
+    }
+    return bound;
+  };
 }
 
 /// Coordinates and velocities of the start, in the nodes' frames.

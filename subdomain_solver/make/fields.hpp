@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,8 +30,9 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
 std::vector<std::unique_ptr<Load>> make_whole_loads(const BodySpec& spec, const Place& place,
                                                     const FeModel& model);
 
-/// [m/s^2] of the body force that is the same everywhere and always.
-double body_acceleration(const BodySpec& spec);
+/// [m/s^2] by which body forces and loads of given acceleration may raise speeds, as a function of
+/// time: of these where the frame of the mesh begins.
+std::function<double(double)> body_acceleration(const BodySpec& spec, const Place& place, int dim);
 
 /// Coordinates [m] and velocities [m/s] of the mesh's model at the start. Throws InputError.
 Motion initial_motion(const BodySpec& spec, const Place& place, const FeModel& model);

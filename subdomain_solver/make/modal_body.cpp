@@ -133,7 +133,7 @@ std::unique_ptr<Interior> make_modal(const BodySpec& spec, const Place& place) {
   std::unique_ptr<ModalModel> model = std::make_unique<ModalModel>(basis.frequencies);
   std::unique_ptr<ModalMap> map = std::make_unique<ModalMap>(basis.shapes);
   parts.problem = std::make_unique<Problem>();
-  parts.body_acceleration = body_acceleration(spec);
+  parts.body_acceleration = body_acceleration(spec, place, nodes.mesh().dim);
   parts.problem->model = model.get();
   const std::size_t nodal = index(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))

@@ -72,14 +72,13 @@ std::unique_ptr<Interior> make_rigid(const BodySpec& spec, const Place& place) {
   options.thickness = model.thickness;
   options.area = model.area();
   parts.model = std::make_unique<FeModel>(
-      std::move(mesh), make_material(*spec.material, place, model.dimension),
-      options);
+      std::move(mesh), make_material(*spec.material, place, model.dimension), options);
   const FeModel& nodes = *parts.model;
   check_mass(nodes.lumped_mass().minCoeff(), nodes.lumped_mass().maxCoeff(), spec, place);
   std::unique_ptr<RigidModel> body = std::make_unique<RigidModel>(nodes, integrator.mass);
   parts.map = std::make_unique<RigidMap>(*body, nodes.mesh());
   parts.problem = std::make_unique<Problem>();
-  parts.body_acceleration = body_acceleration(spec);
+  parts.body_acceleration = body_acceleration(spec, place, nodes.mesh().dim);
   parts.problem->model = body.get();
   const std::size_t nodal = index(nodes.dofs());
   for (std::unique_ptr<Load>& load : make_loads(spec, place, nodes))

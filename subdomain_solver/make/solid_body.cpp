@@ -168,7 +168,7 @@ std::unique_ptr<Interior> make_solid(const BodySpec& spec, const Place& place) {
   parts.pressed_over = interference_of(spec, parts.massive_surface, place);
   parts.map = std::make_unique<IdentityMap>();
   parts.problem = std::make_unique<Problem>();
-  parts.body_acceleration = body_acceleration(spec);
+  parts.body_acceleration = body_acceleration(spec, place, model.mesh().dim);
   parts.problem->model = &model;
   parts.problem->supports = std::move(constraints.supports);
   parts.problem->loads = make_loads(spec, place, model);
