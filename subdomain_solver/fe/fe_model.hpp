@@ -48,6 +48,8 @@ class FeModel final : public Model {
 
   /// [kg] (dofs) lumped, as if none were massless, with the centre that the layer leaves [M.150].
   const Vector& whole_mass() const { return whole_.size() > 0 ? whole_ : lumped_; }
+  /// [kg] (dofs, dofs) consistent, as if none were massless.
+  SparseMatrix whole_consistent_mass() const;
   /// [kg] (dofs, dofs) that coordinates without mass, the rows, gave to others.
   SparseMatrix given_mass() const;
   double inertia_left() const { return inertia_left_; }  // [M.162]; 1 of what is held or round
@@ -120,7 +122,7 @@ class FeModel final : public Model {
                               ModelResponse& out);
   void find_units(const CellMeasures& measures, Assembly& out) const;
   void find_pattern(Assembly& out) const;
-  void assemble_mass(SparseMatrix& out) const;
+  void assemble_mass(SparseMatrix& out, bool layered) const;
   void lump_mass();
   Eigen::MatrixXd nodal_mass(std::size_t block, int cell) const;
   int layer_place(int dof) const;                        // among the massless; -1: it is none

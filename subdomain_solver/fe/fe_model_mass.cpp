@@ -50,11 +50,17 @@ void FeModel::lump_mass() {
 
 const SparseMatrix& FeModel::mass() const {
   SparseMatrix& mass = assembly().mass;
-  if (mass.size() == 0) assemble_mass(mass);
+  if (mass.size() == 0) assemble_mass(mass, true);
   return mass;
 }
 
-void FeModel::assemble_mass(SparseMatrix& out) const {
+SparseMatrix FeModel::whole_consistent_mass() const {
+  SparseMatrix mass;
+  assemble_mass(mass, false);
+  return mass;
+}
+
+void FeModel::assemble_mass(SparseMatrix& out, bool layered) const {
   const int dim = mesh_.dim;
   out = assembly().pattern;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -65,7 +71,7 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
       Eigen::MatrixXd local = Eigen::MatrixXd::Zero(t.nodes * dim, t.nodes * dim);
       for (int i = 0; i < dim; ++i) {
         Eigen::MatrixXd nodal = whole;
-        if (!bare_.empty()) hand_over(nodes_of(cells, c), i, nodal);
+        if (layered && !bare_.empty()) hand_over(nodes_of(cells, c), i, nodal);
         for (int a = 0; a < t.nodes; ++a)
           for (int b = 0; b < t.nodes; ++b) local(a * dim + i, b * dim + i) = nodal(a, b);
       }
@@ -73,7 +79,7 @@ void FeModel::assemble_mass(SparseMatrix& out) const {
       add_matrix(k, c, assembly(), local, out);
     }
   }
-  inherit(out);
+  if (layered) inherit(out);
   out.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0.0; });
   out.data().squeeze();  // two of three entries are gone, their memory not yet
 }

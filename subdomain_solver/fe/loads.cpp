@@ -88,6 +88,12 @@ std::unique_ptr<BodyForce> BodyForce::of_whole_mass(const FeModel& model,
   return load;
 }
 
+std::unique_ptr<BodyForce> BodyForce::of_statics(const FeModel& model, VectorField acceleration) {
+  auto load = std::make_unique<BodyForce>(model, std::move(acceleration));
+  load->of_statics_ = model.whole_consistent_mass();
+  return load;
+}
+
 /// The acceleration is interpolated between the nodes: f = M b, exact where b is uniform.
 void BodyForce::add(double time, std::span<const double>, Vector& force) const {
   const Mesh& mesh = model_.mesh();
@@ -101,6 +107,10 @@ void BodyForce::add(double time, std::span<const double>, Vector& force) const {
     for (int i = 0; i < dim; ++i) b(node * dim + i) = value(acceleration_[i], at, time);
   }
   model_.to_frames({b.data(), index(b.size())});
+  if (of_statics_.size() > 0) {
+    force.noalias() += of_statics_ * b;
+    return;
+  }
   const double share = mass_ == MassForm::averaged ? 0.5 : 1.0;  // as mass_matrix() does
   const Vector& lumped = whole_ ? model_.whole_mass() : model_.lumped_mass();
   if (mass_ != MassForm::consistent) force += share * lumped.cwiseProduct(b);

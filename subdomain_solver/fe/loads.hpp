@@ -43,6 +43,8 @@ class BodyForce final : public Load {
   BodyForce(const FeModel& model, VectorField acceleration, MassForm mass = MassForm::consistent);
   /// With the mass of a body in its passive form, FeModel::whole_mass().
   static std::unique_ptr<BodyForce> of_whole_mass(const FeModel& model, VectorField acceleration);
+  /// As statics has it, whatever coordinates are without mass: FeModel::whole_consistent_mass().
+  static std::unique_ptr<BodyForce> of_statics(const FeModel& model, VectorField acceleration);
   void add(double time, std::span<const double> q, Vector& force) const override;
   bool follows() const override { return false; }
 
@@ -51,6 +53,7 @@ class BodyForce final : public Load {
   VectorField acceleration_;
   MassForm mass_;
   bool whole_ = false;
+  SparseMatrix of_statics_;  // [kg] (dofs, dofs); empty: by mass_
   mutable Vector nodal_;  // [m/s^2] (dofs)
 };
 

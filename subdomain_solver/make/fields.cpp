@@ -88,8 +88,13 @@ std::vector<std::unique_ptr<Load>> all_loads(const BodySpec& spec, const Place& 
 
 std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place& place,
                                               const FeModel& model) {
+  // What stood under the weights of statics stands on under them: masses of a scheme, or of a
+  // surface that gives its own to the nodes inside, would be others.
+  const bool stood =
+      spec.initial.after_statics && std::holds_alternative<FeModelSpec>(spec.model);
   return all_loads(spec, place, model, [&](VectorField acceleration) {
-    return std::make_unique<BodyForce>(model, std::move(acceleration), load_mass(spec));
+    return stood ? BodyForce::of_statics(model, std::move(acceleration))
+                 : std::make_unique<BodyForce>(model, std::move(acceleration), load_mass(spec));
   });
 }
 
