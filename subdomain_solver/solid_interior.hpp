@@ -104,7 +104,8 @@ class SolidInterior final : public Interior,
   double damp(double joules) override;
   std::optional<Failed> pass(const PassiveStep& step, PassiveReply& reply) override;
 
-  /// In its passive form a body has no accelerations, and motion.force is that of its supports.
+  /// In its passive form a body has no accelerations, and motion.force is that of its supports, of
+  /// modes that which accelerates them.
   bool is_passive() const { return state_.begun && state_.motion.a.empty(); }
   double come_to_rest();
   std::optional<Failed> stand_still(double time);
@@ -112,6 +113,7 @@ class SolidInterior final : public Interior,
   void start_passive();
   void take_impulses(const PassiveStep& step);
   std::optional<Failed> pass_guarded(const PassiveStep& step, PassiveReply& reply);
+  std::optional<Failed> step_modes(const PassiveStep& step);
   std::optional<Failed> step_guarded(const PassiveStep& step);
   double store_guarded();
   std::optional<Failed> restart(double time, double& work);

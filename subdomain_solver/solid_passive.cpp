@@ -87,13 +87,10 @@ double told_lower(const Problem& problem, const MidpointStep* midpoint,
 
 }  // namespace
 
-/// Reactions of modes are told by their schemes alone.
 void SolidInterior::find_passive() {
-  const bool modal = parts_.reduced != nullptr && parts_.rigid == nullptr;
   const bool joined = std::ranges::any_of(joined_, [](char yes) { return yes != 0; });
   if (description_.quasi_static && (parts_.reduced != nullptr || joined || description_.dim == 1))
     return;
-  if (modal && parts_.reactions) return;
   // Its rows know of distances alone, not of what is wanted and still to come.
   if (parts_.pressed_over.value_or(0.0) > 0.0 && !description_.quasi_static) return;
   able_.passive = this;
@@ -392,12 +389,23 @@ void SolidInterior::take_impulses(const PassiveStep& step) {
                       now_.begin() + static_cast<std::ptrdiff_t>(port_map_->first(p)));
 }
 
+/// What accelerates modes, whose mass is one, is left as their force: reactions are told by it.
+std::optional<Failed> SolidInterior::step_modes(const PassiveStep& step) {
+  Motion& motion = state_.motion;
+  const std::vector<double> before = motion.v;
+  if (auto failed = midpoint_->step(motion, step.begin, step.end, change_)) return failed;
+  for (std::size_t k = 0; k < before.size(); ++k)
+    motion.force[k] = (motion.v[k] - before[k]) / step.length();
+  return std::nullopt;
+}
+
 /// Cells that are crushed, or would be by the step, are guarded in it.
 std::optional<Failed> SolidInterior::step_guarded(const PassiveStep& step) {
   Motion& motion = state_.motion;
   FeModel& cells = *parts_.model;
   const auto take = [&] { return midpoint_->step(motion, step.begin, step.end, change_); };
-  if (parts_.reduced != nullptr || parts_.problem->model->is_linear()) return take();
+  if (parts_.reduced != nullptr) return step_modes(step);
+  if (parts_.problem->model->is_linear()) return take();
   if (cells.guard(cells.least_volume(motion.q) < nearly_crushed)) return take();
   const Motion before = motion;
   std::optional<Failed> failed = take();

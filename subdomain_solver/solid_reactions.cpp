@@ -33,7 +33,7 @@ void SolidInterior::reactions(std::vector<double>& out) {
     out.clear();
   } else if (!state_.begun) {
     out.assign(description_.columns.size(), 0.0);
-  } else if (is_passive()) {
+  } else if (is_passive() && !parts_.reduced) {
     sum_reactions(*parts_.model, parts_.constraints, view(state_.motion.force), out);
   } else {
     parts_.reactions->sums(state_.motion, state_.time, forces_on_ports(), out);
@@ -42,7 +42,7 @@ void SolidInterior::reactions(std::vector<double>& out) {
 
 FieldValues SolidInterior::nodal_reactions() {
   Vector forces = Vector::Zero(static_cast<Eigen::Index>(nodal_values()));
-  if (is_passive()) {
+  if (is_passive() && !parts_.reduced) {
     forces = view(state_.motion.force);
   } else if (state_.begun) {
     parts_.reactions->forces(state_.motion, state_.time, forces_on_ports(), forces);

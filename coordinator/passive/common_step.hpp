@@ -100,7 +100,7 @@ class CommonStep {
   void see_start();
   double heat_of(const DistanceRow& row) const;
   double speed_of_loads(const DistanceRow& row) const;
-  double speed_of_rest(const DistanceRow& row) const;
+  double speed_of_rest() const;
   void share_out_work();
   void share_out_ties();
   void count_normal(const DistanceRow& row, PassiveLedger& ledger);

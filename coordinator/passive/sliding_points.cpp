@@ -27,29 +27,36 @@ double SlidingPoints::coefficient(const DistanceRow& row, double along, double r
 }
 
 void SlidingPoints::see(const DistanceRow& row, double along, double rest) {
+  if (!(row.friction > 0.0 && row.normal_impulse > 0.0)) return;
   const double held = std::hypot(row.tangential_impulse[0], row.tangential_impulse[1]);
-  if (row.friction > 0.0 && row.normal_impulse > 0.0 && along > rest &&
-      held >= at_its_edge * row.friction * row.normal_impulse)
-    for (const int side : {0, 1}) noted_.insert(row.first_point(side));
+  const bool slides = along > rest && held >= at_its_edge * row.friction * row.normal_impulse;
+  for (const int side : {0, 1}) (slides ? noted_ : stuck_).insert(row.first_point(side));
 }
 
 void SlidingPoints::next_step() {
-  slid_ = std::move(noted_);
+  std::erase_if(slid_, [this](std::int32_t point) {
+    return stuck_.contains(point) || waited_.contains(point);
+  });
+  waited_ = slid_;
+  for (const std::int32_t point : noted_) waited_.erase(point);
+  slid_.merge(noted_);
   noted_.clear();
+  stuck_.clear();
   fresh_ = false;
 }
 
 void SlidingPoints::clear() {
-  slid_.clear();
-  noted_.clear();
+  for (std::set<std::int32_t>* points : {&slid_, &waited_, &noted_, &stuck_}) points->clear();
   fresh_ = true;
 }
 
 void SlidingPoints::state(Archive& archive) {
-  std::vector<double> slid(slid_.begin(), slid_.end());
-  archive.field("slid", slid);
-  slid_.clear();
-  for (const double point : slid) slid_.insert(static_cast<std::int32_t>(point));
+  for (std::set<std::int32_t>* points : {&slid_, &waited_}) {
+    std::vector<double> list(points->begin(), points->end());
+    archive.field("points", list);
+    points->clear();
+    for (const double point : list) points->insert(static_cast<std::int32_t>(point));
+  }
   archive.field("fresh", fresh_);
 }
 

@@ -23,15 +23,18 @@ class SlidingPoints {
   /// slid, but for what rests: rigid bodies are pressed in some steps and at some points more than
   /// in and at others.
   void see(const DistanceRow& row, double along, double rest);
-  /// What see() has noted is for the next step.
+  /// What see() has noted is for the next step. Where nothing pressed in one step, what slid before
+  /// goes on sliding: rigid bodies that rest are pressed in every other step.
   void next_step();
   void clear();
   void state(Archive& archive);
 
  private:
   const TouchingSurfaces& surfaces_;
-  std::set<std::int32_t> slid_, noted_;
-  bool fresh_ = true;  // no step has been seen since the passive way began
+  std::set<std::int32_t> slid_;           // in the step before
+  std::set<std::int32_t> waited_;         // of these, where nothing pressed in it
+  std::set<std::int32_t> noted_, stuck_;  // in this step
+  bool fresh_ = true;                     // no step has been seen since the passive way began
 };
 
 }  // namespace abut

@@ -77,7 +77,7 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
   for (const DistanceRow& row : rows_) {
     count_normal(row, ledger);
     count_friction(row, ledger);
-    sliding_.see(row, along_of(row, velocities_), speed_of_rest(row));
+    sliding_.see(row, along_of(row, velocities_), speed_of_rest());
     if (row.normal_impulse > 0.0) warm_[row.key()] = row.impulse();
     if (row.behind && -row.gap > rounding_of_places * surfaces_.shortest_edge())
       ledger.deepest = std::max(ledger.deepest, -row.gap);
@@ -165,14 +165,14 @@ void CommonStep::see_start() {
   }
 }
 
-/// [m/s] of sides along each other that do not slide: by their loads, or by what sweeps leave.
-double CommonStep::speed_of_rest(const DistanceRow& row) const {
-  return std::max(speed_of_loads(row), rounding_of_places * surfaces_.shortest_edge() / length());
+/// [m/s] of sides along each other that stick: what sweeps leave.
+double CommonStep::speed_of_rest() const {
+  return rounding_of_places * surfaces_.shortest_edge() / length();
 }
 
 void CommonStep::give_friction(DistanceRow& row) const {
   if (!(row.friction > 0.0)) return;
-  row.friction = sliding_.coefficient(row, along_of(row, start_), speed_of_rest(row));
+  row.friction = sliding_.coefficient(row, along_of(row, start_), speed_of_rest());
 }
 
 /// [J] that friction took in the step.

@@ -74,7 +74,11 @@ const Vector& ModalReactions::carried(const Motion& motion, double time, const V
   for (const std::unique_ptr<Load>& load : body_.loads) load->add(time, {}, force_);
   external_.setZero(static_cast<Eigen::Index>(motion.q.size()));
   body_.map.lift(motion.q, span_of(force_), external_);
-  body_.integrator.acceleration(motion, time, body_.step, external_, rates_);
+  if (motion.a.empty()) {
+    rates_ = view(motion.force);  // in the passive form, means over the last step
+  } else {
+    body_.integrator.acceleration(motion, time, body_.step, external_, rates_);
+  }
   acceleration_.resize(index(force_.size()));
   body_.map.acceleration(motion.q, motion.v, span_of(rates_), acceleration_);
   force_.noalias() -= body_.mass * view(acceleration_);

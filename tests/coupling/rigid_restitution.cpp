@@ -120,11 +120,11 @@ TEST(Restitution, OfJoinedHalvesIsThatOfTheWhole) {
         SolidText right = half("right", 300.0, 0.0, height);
         left.sides = {"right"};
         right.sides = {"left"};
-        const auto result = run_solids(
-            0.1, 0.001, {left, right, floor_of(dim)},
-            "  on_left: {sides: [left.skin, floor.face], contact: " + law(e) +
-                "}\n  on_right: {sides: [right.skin, floor.face], contact: " + law(e) +
-                "}\n  joint: {sides: [left.right, right.left], tied: {}}\n");
+        const auto result =
+            run_solids(0.1, 0.001, {left, right, floor_of(dim)},
+                       "  on_left: {sides: [left.skin, floor.face], contact: " + law(e) +
+                           "}\n  on_right: {sides: [right.skin, floor.face], contact: " + law(e) +
+                           "}\n  joint: {sides: [left.right, right.left], tied: {}}\n");
         ASSERT_TRUE(result->completed()) << result->end.reason;
         const std::string up = dim == 2 ? "y" : "z";
         // Of the speed of 1 m/s: joints are met to 1e-3 of the thickness of 2e-4 m, which in steps
@@ -162,6 +162,23 @@ TEST(Restitution, TellsWhatImpactsTook) {
   ASSERT_TRUE(result->completed()) << result->end.reason;
   const double motion = 0.5 * result->masses[0];
   EXPECT_NEAR(result->end.given_up.impacts, 0.75 * motion, 2.0 * lean * motion);
+}
+
+/// What restitution takes back of a push, in the step after it, is no push. A box falls half a
+/// metre and stays; so does its weight.
+TEST(Restitution, ImpulsesAreTheMomentumThatTheyMade) {
+  for (const std::string law : {"  under: {sides: [box.skin, floor.face], contact: {}}\n", ""}) {
+    SolidText box = rigid("box", block_mesh({0.1, 0.1}, {2, 2}), 1000.0, {0.0, 0.503}, {0.0, 0.0});
+    box.more = "    body_force: [0.0, -9.81]\n";
+    box.integrator = "rigid_motion: {step: 0.002}";
+    const double end = 0.4, weight = 10.0 * 9.81;
+    const auto result = run_solids(end, 0.002, {box, floor_of(2)}, law,
+                                   law.empty() ? "contact: {everything: {}}\n" : "");
+    ASSERT_TRUE(result->completed()) << result->end.reason;
+    const double made = 10.0 * result->measure("body.box.velocity.y.mean") + weight * end;
+    const std::string name = law.empty() ? "everything" : "under";
+    EXPECT_NEAR(result->measure("contact." + name + ".impulse"), made, 1.0e-9 * made);
+  }
 }
 
 }  // namespace
