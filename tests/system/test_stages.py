@@ -256,6 +256,49 @@ class Fits(SystemTest):
                 # The upper bar is held by contact alone: what stabilises bore some 1e-5.
                 self.assertLess(max(abs(force - 1.0) for force in moving), 1.0e-4)
 
+    def test_weights_of_statics_are_those_of_motion(self):
+        """A surface gives its mass to the nodes inside, and its weight stays where it stood."""
+        space = "box: {lengths: [0.2, 0.2, 0.1], elements: [3, 3, 2]"
+        plane = "rectangle: {lengths: [0.2, 0.1], elements: [5, 3]"
+        ground = "mesh: {box: {lengths: [2, 2, 1], elements: [1, 1, 1]}}}}"
+        for mesh, scheme in itertools.product(
+                [f"3, mesh: {{{space}}}}}", f"3, mesh: {{{space}, element: tet4}}}}",
+                 f"2, mesh: {{{plane}}}}}", f"2, mesh: {{{plane}, element: quad8}}}}"],
+                ["newmark: {step: 0.002}", "central_difference: {step: 0.0002}",
+                 "generalized_alpha: {step: 0.002}", "hht_alpha: {step: 0.002}"]):
+            dim = int(mesh[0])
+            zeros = "0, " * (dim - 1)
+            floor = ground if dim == 3 else ground.replace("box", "rectangle").replace(
+                "[2, 2, 1]", "[2, 1]").replace("[1, 1, 1]", "[1, 1]")
+            text = f"""
+time: {{end: 1.0, window: 0.25}}
+bodies:
+  floor:
+    model: {{rigid_tool: {{dimension: {dim}, {floor}
+    initial: {{position: [{"-0.9, " * (dim - 1)}-1]}}
+    ports: {{face: {"front" if dim == 3 else "top"}}}
+  block:
+    model: {{fe: {{dimension: {mesh}}}}}
+    material: {{neo_hookean: {{youngs_modulus: 1.0e6, poissons_ratio: 0.3, density: 1000.0}}}}
+    integrator: {{quasi_static: {{step: 0.25}}}}
+    body_force: [{zeros}-9.81]
+    ports: {{skin: boundary}}
+interfaces: {{meet: {{sides: [block.skin, floor.face], contact: {{}}}}}}
+stages:
+  go: {{time: {{end: 1.1, window: 0.002}}, bodies: {{block: {{integrator: {{{scheme}}}}}}}}}
+"""
+            with self.subTest(mesh=mesh, scheme=scheme):
+                done, out = self.run_scene(text)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                with open(out / "history.csv", encoding="utf-8") as file:
+                    rows = [row for row in csv.DictReader(file) if float(row["time [s]"]) > 1.0]
+                self.assertGreater(len(rows), 40)
+                weight = 9.81 * 1000.0 * (0.004 if dim == 3 else 0.02)
+                axis = "z" if dim == 3 else "y"
+                for row in rows:  # what stabilises has borne 1e-12 of the weight
+                    force = float(row[f"block.skin.force_{axis} [N]"])
+                    self.assertAlmostEqual(force / weight, 1.0, delta=1.0e-6)
+
     def test_modes_of_another_mass_are_refused(self):
         text = pressed_bars("", ("newmark: {step: 1.0e-5, mass: lumped}",) * 2, loaded=True,
                             statics="newmark: {step: 0.25}", modal=True)
