@@ -8,33 +8,25 @@
 
 #include "base/one_each.hpp"
 #include "coordinator/coupling/state_fields.hpp"
+#include "coordinator/passive/edge_row.hpp"
 
 namespace abut {
 
 namespace {
 
-/// Of the shortest edge: roundings of places; less is on a surface.
-constexpr double on_surface = 1.0e-6;
-/// Of the thickness: what came out so far is out.
-constexpr double out_by = 0.1;
-/// Of the thickness: steps that bring something deeper by more are not accepted. Rows are met to a
-/// tenth of that, so steps that are short enough are.
-constexpr double deeper_by = 0.5;
 /// A facet faces a point where its normal and the point's are apart by more than that: cosine.
 constexpr double facing = -0.1;
 /// Of how deep a point is behind a facet: one that is as far beside it is not behind it.
 constexpr double beside = 0.5;
 /// The way out of the step before goes on where directions are apart by less than that: cosine.
 constexpr double same_way = 0.3;
-/// Facets of a rim look apart by more than 4 degrees, each by half of that from their mean: cosine.
-constexpr double half_a_rim = 0.9995;
 /// Ways out that go on so are before those through facets that face the point, and others.
 constexpr int same_way_rank = 3;
 /// Ways out are looked for so many times as far as the deepest goes: the nearest facet need not be
 /// the one through which something came.
 constexpr double farther = 2.0;
 
-using Edge = std::array<std::int32_t, 2>;
+using Edge = EdgePoints;
 
 /// Groups whose surfaces end nowhere: all sides of facets are shared.
 std::vector<std::uint8_t> closed_groups(const Skin& skin) {
@@ -130,20 +122,11 @@ bool BehindRows::passes_outside(const SkinTrees& trees, const FeaturePair& pair,
   if (found.distance <= rounding_) return false;
   const auto& w = found.weights;
   const Eigen::Vector3d at = w[0] * x[0] + w[1] * x[1], there = -w[2] * x[2] - w[3] * x[3];
-  const bool rim = (leaves_out(first, other) && is_rim(trees, places, second, there)) ||
-                   (leaves_out(second, one) && is_rim(trees, places, first, at));
+  const bool rim =
+      (leaves_out(first, other) && is_rim(surfaces_, sides_, trees, places, second, there)) ||
+      (leaves_out(second, one) && is_rim(surfaces_, sides_, trees, places, first, at));
   return rim && side_of(trees, places, at, other).gap > rounding_ &&
          side_of(trees, places, there, one).gap > rounding_;
-}
-
-/// Whether the facets of an edge look apart there. Across others what is behind may slide.
-bool BehindRows::is_rim(const SkinTrees& trees, const Places& places, const Edge& edge,
-                        const Eigen::Vector3d& at) const {
-  const std::int32_t facet = trees.closest_facet(surfaces_.skin().group[index(edge[0])], places, at,
-                                                 surfaces_.shortest_edge());
-  return facet >= 0 &&
-         sides_.facet_normal(places, facet).dot(sides_.edge_normal(places, edge[0], edge[1])) <
-             half_a_rim;
 }
 
 // ---- what is behind -----------------------------------------------------------------------------
@@ -372,27 +355,15 @@ void BehindRows::see_facet(const Behind& what, std::int32_t facet, const Places&
   best = way;
 }
 
-/// Along the shortest way between two edges, each of which is behind the other one's facets.
 void BehindRows::see_edge(const Behind& what, const std::array<std::int32_t, 2>& edge,
                           const Places& places, WayOut& best) const {
-  const auto& [a, b] = what.points;
-  const auto& [c, d] = edge;
-  if (d < 0) return;  // none is known yet
+  if (edge[1] < 0) return;  // none is known yet
+  const std::optional<DistanceRow> row = edge_row(sides_, what.points, edge, places);
+  if (!row || row->gap > thickness_) return;
   WayOut way;
-  way.row.features = {FeatureKind::edge_edge, {a, b, c, d}};
-  const FeaturePoints x = abut::places(way.row.features, places);
-  const FeatureDistance found = feature_distance(FeatureKind::edge_edge, 3, x);
-  if (std::ranges::any_of(found.weights, [](double w) { return w == 0.0; })) return;
-  const Eigen::Vector3d apart = sides_.edge_normal(places, c, d) - sides_.edge_normal(places, a, b);
-  Eigen::Vector3d normal = (x[1] - x[0]).cross(x[3] - x[2]);
-  if (!(normal.norm() > 0.0)) return;
-  normal *= (normal.dot(apart) < 0.0 ? -1.0 : 1.0) / normal.norm();
-  way.row.weights = found.weights;
-  way.row.normal = normal;
-  way.row.gap = normal.dot(found.difference(x));
-  way.distance = found.distance;
-  if (way.row.gap > thickness_) return;
-  way.rank = normal.dot(what.out) > same_way ? same_way_rank : 1;
+  way.row = *row;
+  way.distance = std::abs(row->gap);
+  way.rank = row->normal.dot(what.out) > same_way ? same_way_rank : 1;
   if (way.rank < best.rank || (way.rank == best.rank && way.distance >= best.distance)) return;
   best = way;
 }
@@ -404,7 +375,8 @@ void BehindRows::find(SkinTrees& trees, const Places& from, std::vector<Distance
   for (std::size_t k = 0; k < behind_.size(); ++k) {
     const WayOut way = way_out(k, from);
     hold(behind_[k], way);
-    if (way.rank > 0 && can_press(way.row)) rows.push_back(completed(way.row, from));
+    if (way.rank > 0 && can_press(surfaces_, way.row))
+      rows.push_back(held_behind(surfaces_, way.row, from));
   }
 }
 
@@ -413,22 +385,6 @@ void BehindRows::hold(Behind& what, const WayOut& way) {
   what.gap = way.row.gap;
   what.out = way.row.normal;
   what.edge = {way.row.features.points[2], way.row.features.points[3]};
-}
-
-bool BehindRows::can_press(const DistanceRow& row) const {
-  return std::ranges::any_of(row.features.points, [this](std::int32_t point) {
-    return point >= 0 && !surfaces_.stands(point);
-  });
-}
-
-DistanceRow BehindRows::completed(DistanceRow row, const Places& places) const {
-  const auto& p = row.features.points;
-  row.friction = surfaces_.static_friction(p[0], p[index(row.features.first_side())]);
-  row.find_tangents(surfaces_.skin().dim);
-  row.behind = true;
-  if (row.friction > 0.0)
-    row.find_couples(surfaces_.skin().dim, abut::places(row.features, places));
-  return row;
 }
 
 int BehindRows::check(SkinTrees& trees, const Places& from, const Places& to,
@@ -443,7 +399,7 @@ int BehindRows::check(SkinTrees& trees, const Places& from, const Places& to,
       see_edge(what, what.edge, to, way);
     else
       way = way_out(k, to);
-    if (way.rank == 0 || !can_press(way.row)) continue;
+    if (way.rank == 0 || !can_press(surfaces_, way.row)) continue;
     if (!what.is_edge() && !stays(trees, to, what, way, 0.0)) continue;
     const FeaturePoints x = abut::places(way.row.features, from);
     const double gap = way.row.gap;
@@ -452,7 +408,7 @@ int BehindRows::check(SkinTrees& trees, const Places& from, const Places& to,
       way.row.gap += way.row.weights[i] * way.row.normal.dot(x[i]);
     if (gap > std::min(way.row.gap, 0.0) - deeper_by * thickness_) continue;
     ++deeper;
-    rows.push_back(completed(way.row, from));
+    rows.push_back(held_behind(surfaces_, way.row, from));
   }
   return deeper;
 }

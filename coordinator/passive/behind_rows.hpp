@@ -69,8 +69,6 @@ class BehindRows {
   const Behind* known(std::array<std::int32_t, 2> points, std::int32_t group) const;
   bool leaves_out(std::array<std::int32_t, 2> edge, std::int32_t group) const;
   bool passes_outside(const SkinTrees& trees, const FeaturePair& pair, const Places& places) const;
-  bool is_rim(const SkinTrees& trees, const Places& places, const std::array<std::int32_t, 2>& edge,
-              const Eigen::Vector3d& at) const;
   SignedSide side_of(const SkinTrees& trees, const Places& places, const Eigen::Vector3d& x,
                      std::int32_t group) const;
   SignedSide side_of(const SkinTrees& trees, const Places& places, const Behind& what) const;
@@ -87,8 +85,6 @@ class BehindRows {
   void see_facet(const Behind& what, std::int32_t facet, const Places& places, WayOut& best) const;
   void see_edge(const Behind& what, const std::array<std::int32_t, 2>& edge, const Places& places,
                 WayOut& best) const;
-  bool can_press(const DistanceRow& row) const;
-  DistanceRow completed(DistanceRow row, const Places& places) const;
 
   const TouchingSurfaces& surfaces_;
   double thickness_, rounding_;  // [m]

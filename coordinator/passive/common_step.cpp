@@ -408,8 +408,14 @@ void CommonStep::solve_rows(std::size_t answered) {
   solver.press_from(answered);
   solver.solve(still);
   released_ = solver.release(still);
-  if (const double parted = solver.parted(); parted > 0.0)
-    released_ = std::min(released_ + parted, lost_);
+  if (const double parted = solver.parted(); parted > 0.0) {
+    // Friction beside may take as much, and is heat: none of it is for those that part.
+    if (released_ + parted > lost_ + rounding) {
+      for (DistanceRow& row : rows_) row.aimed = row.aimed && row.normal_impulse <= 0.0;
+      solver.solve(still);
+    }
+    released_ = std::min(released_ + solver.parted(), lost_);
+  }
   const double there = credit_ + allowed_ / paid_share;  // [J] of normal contact, while pushing
   returned_ = solver.returned();
   const bool dear =

@@ -52,10 +52,11 @@ NearRows::NearRows(const TouchingSurfaces& surfaces, double thickness)
       surroundings_(surfaces.skin()),
       own_(surfaces, thickness),
       behind_(surfaces, thickness, own_.others()),
+      crossing_(surfaces, thickness, own_.others()),
       ends_(surfaces, thickness) {}
 
 bool NearRows::leaves_out(const FeaturePair& pair, const Places& from) const {
-  return own_.leaves_out(pair) || behind_.leaves_out(trees_, pair, from);
+  return own_.leaves_out(pair) || crossing_.holds(pair) || behind_.leaves_out(trees_, pair, from);
 }
 
 void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
@@ -69,6 +70,7 @@ void NearRows::find(const Places& from, std::vector<DistanceRow>& rows) {
       add_if_closest(pair, from, from, 0.0, rows);
   }
   behind_.find(trees_, from, rows);
+  crossing_.find(from, rows);
   ends_.find(from, reach, rows);
 }
 
@@ -102,7 +104,7 @@ NearRows::Crossed NearRows::check(const Places& from, const Places& to,
     ++crossed.pairs;
     if (add(pair, from, to, part, rows)) ++crossed.added;
   }
-  const int deeper = behind_.check(trees_, from, to, rows);
+  const int deeper = behind_.check(trees_, from, to, rows) + crossing_.check(from, to, rows);
   const EndRows::Crossed ends = ends_.check(from, to, rows);
   crossed.pairs += deeper + ends.pairs;
   crossed.added += deeper + ends.added;

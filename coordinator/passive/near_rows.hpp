@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/passive/behind_rows.hpp"
+#include "coordinator/passive/crossing_rims.hpp"
 #include "coordinator/passive/distance_row.hpp"
 #include "coordinator/passive/end_rows.hpp"
 #include "coordinator/passive/own_gaps.hpp"
@@ -32,7 +33,10 @@ class NearRows {
 
   double thickness() const { return thickness_; }
   /// Where the surfaces are when the passive way begins.
-  void begin(const Places& places) { behind_.begin(trees_, places); }
+  void begin(const Places& places) {
+    behind_.begin(trees_, places);
+    crossing_.begin(trees_, places);
+  }
   /// The step's first rows: of what is near,
   void find(const Places& from, std::vector<DistanceRow>& rows);
   /// and of what free ways bring near.
@@ -42,8 +46,14 @@ class NearRows {
   /// rows of the moments at which they do.
   Crossed check(const Places& from, const Places& to, std::vector<DistanceRow>& rows);
   /// The step was taken.
-  void accept(const Places& places) { behind_.accept(trees_, places); }
-  void state(Archive& archive) { behind_.state(archive); }
+  void accept(const Places& places) {
+    behind_.accept(trees_, places);
+    crossing_.accept(trees_, places);
+  }
+  void state(Archive& archive) {
+    behind_.state(archive);
+    crossing_.state(archive);
+  }
 
  private:
   /// Of a pair at a part of the way, as the features are there.
@@ -67,6 +77,7 @@ class NearRows {
   FeatureSurroundings surroundings_;
   OwnGaps own_;
   BehindRows behind_;
+  CrossingRims crossing_;
   EndRows ends_;
   std::vector<FeaturePair> pairs_;
   std::multimap<DistanceRow::Key, std::size_t> named_;  // places of the step's rows

@@ -7,8 +7,6 @@ namespace abut {
 
 namespace {
 
-/// Rows that say the same have no unique impulses; this share of a row's own compliance picks some.
-constexpr double regularised = 1.0e-6;
 /// Sweeps over all rows. More do not change overlaps or losses: the next step's gaps do.
 constexpr int most_sweeps = 100;
 /// Of the velocity that the largest impulse makes: less is no change. Stiff bodies at rest give way
@@ -18,6 +16,8 @@ constexpr double of_pressed = 1.0e-4;
 /// however short the step; corners that share one plane take many sweeps.
 constexpr double of_approach = 1.0e-6;
 constexpr int most_aimed_sweeps = 1000;
+/// After so many of them all rows are solved for at once, from how they press then.
+constexpr int sweeps_to_leap = 25;
 
 }  // namespace
 
@@ -102,18 +102,6 @@ void RowImpulses::find_bounds(const DistanceRow& row, int directions, std::size_
       for (int e = 0; e < directions; ++e) own(e, d) += row.share_on(i, e).dot(moved);
     }
   });
-}
-
-/// Calls `see` with the first value and the place of each point of a row that is pressed on a
-/// body.
-template <class See>
-void RowImpulses::visit_pressed(const DistanceRow& row, int body, const See& see) const {
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!row.counts(i)) continue;
-    const std::int32_t point = row.features.points[i];
-    const int slot = points_.slot(point);
-    if (slot >= 0 && points_.owner(point) == body) see(slot, i);
-  }
 }
 
 double RowImpulses::velocity(const DistanceRow& row, int direction) const {
@@ -244,17 +232,33 @@ void RowImpulses::solve(const Negligible& negligible) {
     least = std::min(least, of_approach * row.approach);
     sweeps = most_aimed_sweeps;
   }
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    double change = 0.0, pressed = 0.0, impulses = 0.0;
-    for (std::size_t k = 0; k < rows_.size(); ++k) {
-      change = std::max({change, solve_normal(k), solve_friction(k)});
-      const double impulse = std::abs(rows_[k].normal_impulse);
-      pressed = std::max(pressed, answers_[k].normal * impulse);
-      impulses += impulse;
-    }
+  double before = 0.0;
+  bool leaped = false;
+  for (int sweep = 1; sweep <= sweeps; ++sweep) {
+    double pressed = 0.0, impulses = 0.0;
+    const double change = this->sweep(pressed, impulses);
     const bool works = change * impulses > negligible.work && change > of_pressed * pressed;
     if (change < least && !works) return;
+    if (leaped && change > before) return_to_kept();
+    leaped = sweep % sweeps_to_leap == 0;
+    if (!leaped) continue;
+    before = change;
+    keep();
+    leaped = leap();
   }
+}
+
+/// Largest change of a velocity [m/s] by it, of any row; of impulses, the most that one makes of a
+/// velocity, and their sum.
+double RowImpulses::sweep(double& pressed, double& impulses) {
+  double change = 0.0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    change = std::max({change, solve_normal(k), solve_friction(k)});
+    const double impulse = std::abs(rows_[k].normal_impulse);
+    pressed = std::max(pressed, answers_[k].normal * impulse);
+    impulses += impulse;
+  }
+  return change;
 }
 
 double RowImpulses::parted() const {

@@ -41,6 +41,10 @@ class RowImpulses {
   double limit(double most);
 
  private:
+  /// Rows that say the same have no unique impulses; this share of a row's own compliance picks
+  /// some.
+  static constexpr double regularised = 1.0e-6;
+
   struct Change {         // [1/kg] of a body's velocities by a unit impulse
     Eigen::VectorXd all;  // (values)
     std::vector<std::pair<int, Eigen::Vector3d>> some;  // in its place: first value, of a point
@@ -57,8 +61,17 @@ class RowImpulses {
                     Eigen::Matrix3d& own) const;
   void find_bounds(const DistanceRow& row, int directions, std::size_t side, Answer& answer,
                    Eigen::Matrix3d& own) const;
+  /// Calls `see` with the first value and the place of each point of a row that is pressed on a
+  /// body.
   template <class See>
-  void visit_pressed(const DistanceRow& row, int body, const See& see) const;
+  void visit_pressed(const DistanceRow& row, int body, const See& see) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!row.counts(i)) continue;
+      const std::int32_t point = row.features.points[i];
+      const int slot = points_.slot(point);
+      if (slot >= 0 && points_.owner(point) == body) see(slot, i);
+    }
+  }
   double velocity(const DistanceRow& row, int direction) const;
   void press(std::size_t row, int direction, double impulse);
   double solve_normal(std::size_t row);
@@ -67,6 +80,19 @@ class RowImpulses {
   std::array<double, 2> held(std::size_t row) const;
   std::array<double, 2> given_back(const DistanceRow& row) const;
   double solve_friction(std::size_t row);
+  double sweep(double& pressed, double& impulses);
+
+  struct Component {
+    std::size_t row;
+    int direction;  // 0: along the normal
+  };
+  double response(const Component& of, const Component& to) const;
+  std::vector<Component> pressing() const;
+  std::array<double, 2> slid_along(std::size_t row) const;
+  void add(const Component& to, double change);
+  bool leap();
+  void keep();
+  void return_to_kept();
 
   std::vector<DistanceRow>& rows_;
   PressedPoints& points_;
@@ -74,6 +100,7 @@ class RowImpulses {
   std::span<const Eigen::Vector3d> velocities_;
   int dim_;
   std::vector<Answer> answers_;
+  std::vector<std::array<double, 3>> kept_;  // [N s] (rows; directions) before a leap
 };
 
 /// [m/s] w of a row along its normal (0) or a tangent, of mean velocities of all points.
