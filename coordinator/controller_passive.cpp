@@ -314,6 +314,7 @@ GivenUp Controller::given_up() const {
           .damped = passive.damped,
           .switched = passive.switched,
           .push_out = passive.push_out,
+          .taken_back = passive.taken_back,
           .repaid = passive.repaid,
           .deepest = passive.deepest,
           .largest = std::max(

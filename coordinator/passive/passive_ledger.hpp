@@ -13,13 +13,14 @@ namespace abut {
 
 /// What passive steps have taken from the bodies, and what they had to do for it.
 struct PassiveLedger {
-  double normal = 0.0;    // [J] lost in normal contact
-  double impacts = 0.0;   // [J] of it between rigid bodies, as restitution has it
-  double friction = 0.0;  // [J] by friction, which is physics
-  double push_out = 0.0;  // [J] given to part what was too near, out of what normal contact lost
-  double damped = 0.0;    // [J] taken back from bodies that gained, or held rigid for an instant
-  double repaid = 0.0;    // [J] gained in accurate windows and taken back from bodies that touch
-  double switched = 0.0;  // [J] lost where bodies changed their form
+  double normal = 0.0;      // [J] lost in normal contact
+  double impacts = 0.0;     // [J] of it between rigid bodies, as restitution has it
+  double friction = 0.0;    // [J] by friction, which is physics
+  double push_out = 0.0;    // [J] given to part what was too near, out of what normal contact lost
+  double damped = 0.0;      // [J] taken from bodies that were held rigid for an instant
+  double taken_back = 0.0;  // [J] that steps had given a body beside contact, no more
+  double repaid = 0.0;      // [J] gained in accurate windows and taken back from bodies that touch
+  double switched = 0.0;    // [J] lost where bodies changed their form
   std::int64_t steps = 0, refused = 0, windows = 0, rigid = 0;
   // windows in which steps were halved, in which bodies were held rigid; times that the accurate
   // method had no answer
@@ -52,8 +53,8 @@ struct PassiveLedger {
     PassiveLedger all = *this;
     for (double PassiveLedger::*sum :
          {&PassiveLedger::normal, &PassiveLedger::impacts, &PassiveLedger::friction,
-          &PassiveLedger::push_out, &PassiveLedger::damped, &PassiveLedger::repaid,
-          &PassiveLedger::switched})
+          &PassiveLedger::push_out, &PassiveLedger::damped, &PassiveLedger::taken_back,
+          &PassiveLedger::repaid, &PassiveLedger::switched})
       all.*sum += earlier.*sum;
     for (std::int64_t PassiveLedger::*count :
          {&PassiveLedger::steps, &PassiveLedger::refused, &PassiveLedger::windows,
@@ -74,7 +75,7 @@ struct PassiveLedger {
   }
   /// What bodies without inertia give up is no energy of motion.
   void leave_out_energies() {
-    normal = impacts = friction = push_out = damped = repaid = switched = 0.0;
+    normal = impacts = friction = push_out = damped = taken_back = repaid = switched = 0.0;
     lost.clear();
     taken.clear();
     rubbed.clear();
@@ -91,6 +92,7 @@ struct PassiveLedger {
     archive.field("friction", friction);
     archive.field("push_out", push_out);
     archive.field("damped", damped);
+    archive.field("taken_back", taken_back);
     archive.field("repaid", repaid);
     archive.field("switched", switched);
     archive.field("steps", steps);

@@ -87,6 +87,7 @@ class RowImpulses {
     int direction;  // 0: along the normal
   };
   double response(const Component& of, const Component& to) const;
+  double response_with(const Component& of, const Component& to) const;
   std::vector<Component> pressing() const;
   std::array<double, 2> slid_along(std::size_t row) const;
   void add(const Component& to, double change);

@@ -12,9 +12,12 @@ namespace abut {
 namespace {
 
 /// Components: more are left to sweeps, as their matrix is dense.
-constexpr std::size_t most_at_once = 300;
+constexpr std::size_t most_at_once = 150;
 /// Of what a row holds along its surfaces at most: from there on it slides.
 constexpr double slides_from = 1.0 - 1.0e-9;
+/// Of the rows' largest: what changes velocities by less are rows that say the same, which do not
+/// press each other. Masses that differ by more are left to sweeps.
+constexpr double the_same = 1.0e-6;
 
 }  // namespace
 
@@ -32,6 +35,16 @@ double RowImpulses::response(const Component& of, const Component& to) const {
         if (at == slot) sum += share.dot(moved);
     });
   }
+  return sum;
+}
+
+/// The same of a change of what presses a row that slides, which slides on with it.
+double RowImpulses::response_with(const Component& of, const Component& to) const {
+  double sum = response(of, to);
+  if (to.direction != 0) return sum;
+  const std::array<double, 2> along = slid_along(to.row);
+  for (int t = 0; t + 1 < dim_; ++t)
+    if (along[index(t)] != 0.0) sum += along[index(t)] * response(of, {to.row, t + 1});
   return sum;
 }
 
@@ -59,24 +72,18 @@ bool RowImpulses::leap() {
   if (all.size() < 2 || all.size() > most_at_once) return false;
   const auto count = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXd matrix(count, count);
-  Eigen::VectorXd missing(count);
+  Eigen::VectorXd missing(count), unit(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Component& of = all[index(i)];
-    const DistanceRow& row = rows_[of.row];
-    const double own = of.direction == 0 ? answers_[of.row].normal : answers_[of.row].tangential;
-    missing(i) = -velocity(row, of.direction);
-    if (of.direction == 0) missing(i) += row.held() - regularised * own * row.normal_impulse;
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const Component& to = all[index(j)];
-      matrix(i, j) = response(of, to);
-      const std::array<double, 2> along =
-          to.direction == 0 ? slid_along(to.row) : std::array<double, 2>{};
-      for (int t = 0; t + 1 < dim_; ++t)
-        if (along[index(t)] != 0.0) matrix(i, j) += along[index(t)] * response(of, {to.row, t + 1});
-    }
-    matrix(i, i) += regularised * own;
+    const Answer& own = answers_[of.row];
+    unit(i) = 1.0 / std::sqrt(of.direction == 0 ? own.normal : own.tangential);
+    missing(i) = -velocity(rows_[of.row], of.direction);
+    if (of.direction == 0) missing(i) += rows_[of.row].held();
+    for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) = response_with(of, all[index(j)]);
   }
-  const Eigen::VectorXd change = solve_square(matrix, missing);
+  matrix = unit.asDiagonal() * matrix * unit.asDiagonal();
+  const Eigen::VectorXd change =
+      unit.cwiseProduct(pseudo_inverse(matrix, the_same) * unit.cwiseProduct(missing));
   if (!change.allFinite()) return false;
   double part = 1.0;
   for (Eigen::Index i = 0; i < count; ++i) {

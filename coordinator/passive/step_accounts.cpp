@@ -67,7 +67,7 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
     if (account > 0.0 && gained[index(b)] > 0.0 && std::isfinite(bodies_.describe(b).mass))
       taken = bodies_.ask_passively(b).damp(account);
     account -= taken;
-    ledger.damped += taken;
+    ledger.taken_back += taken;
     if (taken != 0.0) PassiveLedger::add(ledger.taken, b, taken);
     replies_[index(b)].record.energy.kinetic -= taken;
     energies_[index(b)] = own_energy(replies_[index(b)].record);

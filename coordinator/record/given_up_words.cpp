@@ -73,7 +73,7 @@ std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
   const bool lost_much = up.joules() - up.impacts > nothing * up.largest;
   if (!lost_much && up.rigid_windows == 0) return {};
   // Normal contact loses the motion of the nodes that meet, and so do changes of form: their mass
-  // falls with the mesh. What steps gain and damping takes falls with the steps.
+  // falls with the mesh. What bodies lose that are held rigid falls with the steps.
   const double normal = up.normal - up.impacts - up.push_out, by_mesh = normal + up.switched;
   if (by_mesh < up.damped) {
     const int body = most_of(up.refused_by.empty() ? up.taken : up.refused_by);

@@ -107,6 +107,7 @@ struct GivenUp {
   // [J] lost in normal contact, of it between rigid bodies; by friction, by damping, at changes of
   // form; given to part bodies
   double normal = 0.0, impacts = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
+  double taken_back = 0.0;  // [J] that passive steps gave bodies beside contact, and took again
   double repaid = 0.0;   // [J] that accurate windows gained and that was taken back at their ends
   double deepest = 0.0;  // [m] behind a partner's surface
   // [J] the largest kinetic and stored energy of the run, or all that went into it where that is
@@ -120,21 +121,21 @@ struct GivenUp {
 };
 
 struct RunEnd {
-  std::string status;  // completed | failed | interrupted
+  std::string status;       // completed | failed | interrupted
   std::string reason = {};  // why it failed, in words; else empty
-  double time = 0.0;   // [s] how far the run came
+  double time = 0.0;        // [s] how far the run came
   // over bodies and coordinator, equal in every placement; empty: the bodies were gone
   std::optional<std::uint64_t> state_hash = {};
   std::vector<std::uint64_t> body_hashes = {};  // by body: those of the bodies alone
-  std::int64_t windows = 0;                // accepted
-  std::int64_t contact_windows = 0;        // accepted with a closed interface
-  std::int64_t exchanges = 0;              // requests answered by bodies, kernels included
-  double wall_seconds = 0.0;               // first window to last
-  std::vector<double> compute_seconds = {};  // by body
+  std::int64_t windows = 0;                     // accepted
+  std::int64_t contact_windows = 0;             // accepted with a closed interface
+  std::int64_t exchanges = 0;                   // requests answered by bodies, kernels included
+  double wall_seconds = 0.0;                    // first window to last
+  std::vector<double> compute_seconds = {};     // by body
   // by body, in the order of its Description::measures; empty where the run did not come to its end
   std::vector<std::vector<double>> body_measures = {};
-  double overhead_median_seconds = 0.0;  // per exchange: wall minus compute
-  std::vector<Overlap> overlaps = {};    // that were found, each pair once
+  double overhead_median_seconds = 0.0;     // per exchange: wall minus compute
+  std::vector<Overlap> overlaps = {};       // that were found, each pair once
   std::vector<std::string> never_met = {};  // interfaces that never closed where they should have
   GivenUp given_up = {};
 };
