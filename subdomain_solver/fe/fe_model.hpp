@@ -42,9 +42,10 @@ class FeModel final : public Model {
   /// Moves the mass of these dofs (sorted) to those of the others of their cells, direction by
   /// direction (the surface layer, [M.85]), once, before anything asks for a mass; cells that have
   /// no others give theirs to the nearest nodes that have some. `held`: dofs (sorted) whose motion
-  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left;
-  /// all masses are as before then.
-  void make_massless(std::vector<int> bare, const std::vector<int>& held);
+  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left,
+  /// or less than `least_inertia` of the moments of inertia; all masses are as before then.
+  void make_massless(std::vector<int> bare, const std::vector<int>& held,
+                     double least_inertia = 0.0);
 
   /// [kg] (dofs) lumped, as if none were massless, with the centre that the layer leaves [M.150].
   const Vector& whole_mass() const { return whole_.size() > 0 ? whole_ : lumped_; }

@@ -97,7 +97,8 @@ int FeModel::layer_place(int dof) const {
   return at != massless_.end() && *at == dof ? static_cast<int>(at - massless_.begin()) : -1;
 }
 
-void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held) {
+void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held,
+                            double least_inertia) {
   ABUT_ASSERT(bare_.empty() && (!assembly_ || assembly_->mass.size() == 0));
   bare_ = std::move(bare);
   held_ = held;
@@ -115,6 +116,12 @@ void FeModel::make_massless(std::vector<int> bare, const std::vector<int>& held)
     // What is held, and what is round, has no angular momentum to keep.
     if (mesh_.dim > 1 && held.empty() && frames_.empty() && !round()) {
       inertia_left_ = abut::inertia_left(mesh_, whole_, lumped_);
+      if (inertia_left_ < least_inertia)
+        throw InputError(
+            fmt::format("has a surface that leaves {:.0f} % of the moments of inertia while it is "
+                        "free of mass",
+                        100.0 * inertia_left_),
+            "mesh", "Make the mesh three elements across, or give fewer ports contact.");
       std::optional<Vector> centred = with_centre_of(mesh_, whole_, lumped_);
       if (!centred)
         throw InputError(
