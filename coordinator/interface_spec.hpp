@@ -24,6 +24,10 @@ struct ContactSpec {
 inline double sliding(const ContactSpec& law) {
   return law.friction.coefficient(law.friction.remember(true));
 }
+/// Of what sticks.
+inline double holding(const ContactSpec& law) {
+  return law.friction.coefficient(law.friction.remember(false));
+}
 /// Contact that is not written pair by pair.
 struct SceneContactSpec {
   std::optional<ContactSpec> everything;  // between any two surfaces; absent: interfaces say it

@@ -220,10 +220,12 @@ void Narrator::passive(double time, const std::string& reason, bool statics) {
   tell({RunEvent::Kind::warning,
         time,
         blamed(reason),
-        fmt::format(
-            "the accurate method has no answer ({}): bodies go on passively, which {}{}", reason,
-            statics ? "is right to some hundredths where they come to rest" : "loses energy",
-            told_passive_ == most_told ? "; later times are counted only" : ""),
+        fmt::format("the accurate method has no answer ({}): bodies go on passively, which {}{}",
+                    reason,
+                    statics ? "is right to some hundredths where they come to rest and faces "
+                              "press, less where edges press on few cells"
+                            : "loses energy",
+                    told_passive_ == most_told ? "; later times are counted only" : ""),
         {}});
 }
 

@@ -61,10 +61,7 @@ void add_everything(const ContactSpec& law, std::span<const Joint> joints, const
                (is(pair.sides[1], one) && is(pair.sides[0], other));
       });
       if (wholes[index(one.body)] != wholes[index(other.body)] && !stand && !written)
-        pairs.push_back({{one, other},
-                         sliding(law),
-                         law.restitution.value_or(0.0),
-                         law.friction.static_friction});
+        pairs.push_back({{one, other}, sliding(law), law.restitution.value_or(0.0), holding(law)});
     }
   }
 }
@@ -123,8 +120,7 @@ std::vector<TouchingPair> touching_pairs(const Scene& scene, std::span<const Joi
     if (joint.exchange == nullptr || joint.tied()) continue;
     const InterfaceSpec& spec = scene.interfaces[index(joint.interface)].second;
     const ContactSpec law = spec.contact.value_or(ContactSpec());
-    pairs.push_back(
-        {joint.sides, sliding(law), law.restitution.value_or(0.0), law.friction.static_friction});
+    pairs.push_back({joint.sides, sliding(law), law.restitution.value_or(0.0), holding(law)});
   }
   if (scene.everything() != nullptr) add_everything(*scene.everything(), joints, bodies, pairs);
   if (const std::optional<double> friction = scene.own_friction())

@@ -16,7 +16,7 @@ constexpr double force_rounding = 1.0e-6;
 
 }  // namespace
 
-void PortForces::join(std::size_t port, const std::vector<Light>& massless) {
+void PortForces::join(std::size_t port, const std::vector<std::size_t>& massless) {
   joined_.push_back(port);
   light_.insert(light_.end(), massless.begin(), massless.end());
 }
@@ -41,6 +41,9 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
       first = false;
     }
   }
+  // Means that end leave slopes behind.
+  if (std::ranges::any_of(light_before_, [](double force) { return force != 0.0; }))
+    forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
 }
 
 void PortForces::add_constant(const Waveform& imposed, std::size_t port, bool first) {
@@ -115,35 +118,22 @@ void PortForces::light_means(int i, std::vector<double>& out) const {
   out.assign(light_.size(), 0.0);
   if (acts())
     for (std::size_t k = 0; k < out.size(); ++k)
-      out[k] = forces_[index(i) * map_.values() + light_[k].value];
+      out[k] = forces_[index(i) * map_.values() + light_[k]];
 }
 
 /// What has no mass would jump with forces that are constant in steps, and each jump would take
 /// half of the change of the force, times that of the place, from the pair. With the slope of the
-/// last two means it jumps by what the slope changes; what contact presses, whose partner does not
-/// jump, not at all  [M.164].
-void PortForces::enter(int substep, const std::vector<double>& now) {
-  substep_ = substep;
-  light_begin_.assign(light_.size(), 0.0);
-  if (!acts() || substep == 0 || grid_.count == 0) return;
-  const double* row = forces_.data() + index(std::min(substep, grid_.count)) * map_.values();
-  for (std::size_t k = 0; k < light_.size(); ++k) {
-    const std::size_t value = light_[k].value;
-    const double before = substep == 1 ? light_before_[k] : *(row - map_.values() + value);
-    const bool pressed =
-        std::ranges::any_of(light_[k].besides, [&now](std::size_t v) { return now[v] != 0.0; });
-    light_begin_[k] = pressed ? now[value] : 0.5 * (before + row[value]);
-  }
-}
-
+/// last two means it jumps by what the slope changes  [M.164].
 void PortForces::add_slopes(double time, std::vector<double>& out) const {
   const int i = std::min(substep_, grid_.count);
   if (i == 0) return;
   const double begin = i == 1 ? grid_.begin : grid_.time(i - 1);
   const double share = std::clamp((time - begin) / grid_.length(i), 0.0, 1.0);
   for (std::size_t k = 0; k < light_.size(); ++k) {
-    double& force = out[light_[k].value];  // the mean
-    force += (1.0 - 2.0 * share) * (light_begin_[k] - force);
+    const double before =
+        i == 1 ? light_before_[k] : forces_[index(i - 1) * map_.values() + light_[k]];
+    double& force = out[light_[k]];  // the mean
+    force += (share - 0.5) * (force - before);
   }
 }
 

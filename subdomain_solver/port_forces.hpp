@@ -26,19 +26,14 @@ class PortForces final : public Load {
   /// means over the substep before it.
   void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid,
               std::span<const double> light_before = {});
-  /// Of a node without mass.
-  struct Light {
-    std::size_t value;                 // of a joined port
-    std::vector<std::size_t> besides;  // values of other ports on the same node
-  };
-  /// From now on, forces on this port are those of joined sides.
-  void join(std::size_t port, const std::vector<Light>& massless);
-  const std::vector<Light>& light() const { return light_; }  // of all joined ports
+  /// From now on, forces on this port are those of joined sides; massless: those of its values that
+  /// belong to nodes without mass.
+  void join(std::size_t port, const std::vector<std::size_t>& massless);
+  const std::vector<std::size_t>& light() const { return light_; }  // of all joined ports
   /// [N] (light) over substep i of the window; zeros where nothing is imposed.
   void light_means(int i, std::vector<double>& out) const;
   /// The substep that begins, from 1: of joined ports at() tells its forces.
-  /// now [N] (values): acts at its begin.
-  void enter(int substep, const std::vector<double>& now);
+  void enter(int substep) { substep_ = substep; }
   bool acts() const { return !forces_.empty(); }
 
   /// From now on, instants are kept beside the means.
@@ -73,10 +68,9 @@ class PortForces final : public Load {
   std::vector<double> mean_;    // [N] of a waveform over a dual cell
   std::vector<double> instant_;
   mutable std::vector<double> now_;
-  std::vector<std::size_t> joined_;  // ports
-  std::vector<Light> light_;
+  std::vector<std::size_t> joined_;   // ports
+  std::vector<std::size_t> light_;    // values of joined ports on nodes without mass
   std::vector<double> light_before_;  // [N] (light)
-  std::vector<double> light_begin_;   // [N] (light) of the substep
   int substep_ = 1;
 };
 

@@ -15,7 +15,7 @@ bool PortForecast::tell(const Window& window, std::vector<double>& u) {
   if (std::ranges::any_of(window.request.boundary, presses)) return false;
   const Substeps& grid = window.grid;
   forces_.impose(window.request.boundary, grid);
-  forces_.enter(1, {});
+  forces_.enter(1);
   ahead_.steps = 0;
   u.resize(index(grid.count) * map_.values());
   for (int i = 1; i <= grid.count; ++i) {

@@ -48,22 +48,13 @@ double kicked_ahead(const RigidModel& body, const Motion& motion, Vector& force)
 }
 
 /// Values of a joined port that belong to nodes without mass.
-std::vector<PortForces::Light> massless_values(const std::vector<int>& massless,
-                                               const std::vector<NamedNodes>& ports,
-                                               std::size_t joined, const PortMap& map) {
-  std::vector<PortForces::Light> out;
-  const int dim = map.dim();
-  for (std::size_t k = 0; k < ports[joined].nodes.size() * index(dim); ++k) {
-    const std::int32_t node = ports[joined].nodes[k / index(dim)];
-    if (!std::ranges::binary_search(massless, node * dim + static_cast<int>(k) % dim)) continue;
-    PortForces::Light& light = out.emplace_back(map.first(joined) + k);
-    for (std::size_t p = 0; p < ports.size(); ++p) {
-      const auto at = std::ranges::find(ports[p].nodes, node);
-      if (p == joined || at == ports[p].nodes.end()) continue;
-      const std::size_t first = index(at - ports[p].nodes.begin()) * index(dim);
-      for (int i = 0; i < dim; ++i) light.besides.push_back(map.first(p) + first + index(i));
-    }
-  }
+std::vector<std::size_t> massless_values(const std::vector<int>& massless, const NamedNodes& port,
+                                         std::size_t first, int dim) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < port.nodes.size() * index(dim); ++k)
+    if (std::ranges::binary_search(
+            massless, port.nodes[k / index(dim)] * dim + static_cast<int>(k % index(dim))))
+      out.push_back(first + k);
   return out;
 }
 
@@ -80,9 +71,10 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     const bool conserves = parts_.scheme.integrator->able().lag == nullptr;
     for (std::size_t p = 0; p < ports_.size(); ++p)
       if (joined_[p])
-        port_forces_->join(
-            p, conserves ? massless_values(parts_.problem->model->massless(), ports_, p, *port_map_)
-                         : std::vector<PortForces::Light>());
+        port_forces_->join(p, conserves
+                                  ? massless_values(parts_.problem->model->massless(), ports_[p],
+                                                    port_map_->first(p), description_.dim)
+                                  : std::vector<std::size_t>());
     if (joins_) description_.can.kernel = true;
     description_.can.impulse = joins_ && !description_.quasi_static;
     places_.assign(port_map_->values(), 0.0);
@@ -282,7 +274,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   }
   if (port_forces_ != nullptr) {
     port_forces_->impose(window.request.boundary, window.grid, state_.light_mean);
-    port_forces_->enter(1, state_.port_force);
+    port_forces_->enter(1);
   }
   substep_ = 0;
   if (contact_) contact_->impose(window);
@@ -293,11 +285,11 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
   if (!state_.begun) {
     const bool without_ties =
         port_forces_ != nullptr && parts_.scheme.integrator->able().accelerates_without_ties;
-    if (without_ties) port_forces_->enter(0, state_.port_force);
+    if (without_ties) port_forces_->enter(0);
     parts_.problem->set_rates(time, parts_.scheme.step, state_.motion);
     if (std::optional<Failed> failed = parts_.scheme.integrator->begin(state_.motion, time))
       return failed;
-    if (without_ties) port_forces_->enter(1, state_.port_force);
+    if (without_ties) port_forces_->enter(1);
     state_.begun = true;
     state_.time = time;
   }
@@ -316,7 +308,7 @@ std::optional<Failed> SolidInterior::step(const Window& window, int i, bool) {
   substep_ = i;
   if (i > 1) left_ = places_;
   if (joins_ && i > 1) {  // forces of joined sides jump
-    port_forces_->enter(i, state_.port_force);
+    port_forces_->enter(i);
     if (std::optional<Failed> failed = meet_port_forces(begin)) return failed;
   }
   // Slip is counted from where the surface was: what has no mass jumps with forces of joined sides.

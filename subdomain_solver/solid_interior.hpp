@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "base/index.hpp"
 #include "subdomain_solver/contact/contact_fields.hpp"
 #include "subdomain_solver/contact/port_contact.hpp"
 #include "subdomain_solver/contact/self_crossings.hpp"
@@ -22,7 +21,6 @@
 #include "subdomain_solver/port_forecast.hpp"
 #include "subdomain_solver/port_statics.hpp"
 #include "subdomain_solver/reactions.hpp"
-#include "subdomain_solver/solid_measures.hpp"
 #include "subdomain_solver/time/integrator.hpp"
 
 namespace abut {
@@ -104,8 +102,7 @@ class SolidInterior final : public Interior,
   double damp(double joules) override;
   std::optional<Failed> pass(const PassiveStep& step, PassiveReply& reply) override;
 
-  /// In its passive form a body has no accelerations, and motion.force is that of its supports, of
-  /// modes that which accelerates them.
+  /// Then it has no accelerations; motion.force is that of its supports, of modes what moves them.
   bool is_passive() const { return state_.begun && state_.motion.a.empty(); }
   double come_to_rest();
   std::optional<Failed> stand_still(double time);
@@ -113,8 +110,7 @@ class SolidInterior final : public Interior,
   void start_passive();
   void take_impulses(const PassiveStep& step);
   std::optional<Failed> pass_guarded(const PassiveStep& step, PassiveReply& reply);
-  std::optional<Failed> step_modes(const PassiveStep& step);
-  std::optional<Failed> step_guarded(const PassiveStep& step);
+  std::optional<Failed> step_modes(const PassiveStep&step), step_guarded(const PassiveStep&step);
   double store_guarded();
   std::optional<Failed> restart(double time, double& work);
   void spread_velocities();

@@ -401,20 +401,14 @@ void CommonStep::solve_rows(std::size_t answered) {
   for (int b = 0; b < bodies_.count(); ++b) take_answer(b, std::ldexp(1.0, doubled));
   const RowImpulses::Negligible still = {
       fine_ * (statics_ ? fits_at_rest : 1.0) * negligible * near_.thickness() / length(),
-      ties_.any() ? std::numeric_limits<double>::infinity() : no_work * most_};
+      ties_.any() ? std::numeric_limits<double>::infinity() : no_work * most_, statics_};
   const double rounding = 1.0e-3 * rounding_of_work * most_;
   RowImpulses solver(rows_, points_, surfaces_, velocities_);
   solver.press_from(answered);
   solver.solve(still);
   released_ = solver.release(still);
-  if (const double parted = solver.parted(); parted > 0.0) {
-    // Friction beside may take as much, and is heat: none of it is for those that part.
-    if (released_ + parted > lost_ + rounding) {
-      for (DistanceRow& row : rows_) row.aimed = row.aimed && row.normal_impulse <= 0.0;
-      solver.solve(still);
-    }
-    released_ = std::min(released_ + solver.parted(), lost_);
-  }
+  if (const double parted = solver.parted(); parted > 0.0)
+    released_ = std::min(released_ + parted, lost_);
   const double there = credit_ + allowed_ / paid_share;  // [J] of normal contact, while pushing
   returned_ = solver.returned();
   const bool dear =

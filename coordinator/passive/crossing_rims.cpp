@@ -32,7 +32,8 @@ bool CrossingRims::holds(const FeaturePair& pair) const {
 /// Whether either side's facets look at the other one's, with both edges nearest inside.
 bool CrossingRims::faces(const DistanceRow& row, const Places& places) const {
   const auto& p = row.features.points;
-  if (std::ranges::any_of(row.weights, [](double w) { return std::abs(w) < at_an_end; })) return false;
+  if (std::ranges::any_of(row.weights, [](double w) { return std::abs(w) < at_an_end; }))
+    return false;
   return row.normal.dot(sides_.edge_normal(places, p[0], p[1])) < -looks &&
          row.normal.dot(sides_.edge_normal(places, p[2], p[3])) > looks;
 }

@@ -52,7 +52,7 @@ bool can_press(const TouchingSurfaces& surfaces, const DistanceRow& row) {
 DistanceRow held_behind(const TouchingSurfaces& surfaces, DistanceRow row,
                         const std::vector<Eigen::Vector3d>& places) {
   const auto& p = row.features.points;
-  row.friction = surfaces.static_friction(p[0], p[index(row.features.first_side())]);
+  row.friction = surfaces.holding(p[0], p[index(row.features.first_side())]);
   row.find_tangents(surfaces.skin().dim);
   row.behind = true;
   if (row.friction > 0.0) row.find_couples(surfaces.skin().dim, abut::places(row.features, places));

@@ -178,7 +178,7 @@ bool NearRows::add(const FeaturePair& pair, const Places& from, const Places& to
     return false;
   row.normal = found.difference(x) / found.distance;
   for (std::size_t i = 0; i < 4; ++i) row.gap += row.weights[i] * row.normal.dot(x0[i]);
-  row.friction = surfaces_.static_friction(pair.points[0], pair.points[index(pair.first_side())]);
+  row.friction = surfaces_.holding(pair.points[0], pair.points[index(pair.first_side())]);
   row.find_tangents(dim);
   if (known(row, rows)) return false;
   named_.emplace(row.key(), rows.size());

@@ -18,6 +18,9 @@ constexpr double of_approach = 1.0e-6;
 constexpr int most_aimed_sweeps = 1000;
 /// After so many of them all rows are solved for at once, from how they press then.
 constexpr int sweeps_to_leap = 25;
+/// After the last of these, where rows are aimed or bodies rest: friction is for sweeps to settle.
+/// Others, as heavy bodies on light ones, are not to lose what they have found.
+constexpr int sweeps_to_settle = 5;
 
 }  // namespace
 
@@ -234,13 +237,15 @@ void RowImpulses::solve(const Negligible& negligible) {
   }
   double before = 0.0;
   bool leaped = false;
-  for (int sweep = 1; sweep <= sweeps; ++sweep) {
+  const bool settles = negligible.settles || sweeps > most_sweeps;
+  const int last = sweeps + (settles ? sweeps_to_settle : 0);
+  for (int sweep = 1; sweep <= last; ++sweep) {
     double pressed = 0.0, impulses = 0.0;
     const double change = this->sweep(pressed, impulses);
     const bool works = change * impulses > negligible.work && change > of_pressed * pressed;
     if (change < least && !works) return;
     if (leaped && change > before) return_to_kept();
-    leaped = sweep % sweeps_to_leap == 0;
+    leaped = sweep % sweeps_to_leap == 0 && sweep <= sweeps;
     if (!leaped) continue;
     before = change;
     keep();

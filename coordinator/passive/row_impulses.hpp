@@ -24,6 +24,7 @@ class RowImpulses {
   /// Less change of a velocity [m/s] is none, unless impulses do more than that work [J] by it.
   struct Negligible {
     double velocity = 0.0, work = 0.0;
+    bool settles = false;  // sweeps have the last word
   };
   void solve(const Negligible& negligible);
   /// [m/s] w of a row along its normal.

@@ -18,7 +18,7 @@ constexpr double at_its_edge = 1.0 - 1.0e-6;
 double SlidingPoints::coefficient(const DistanceRow& row, double along, double rest) const {
   const std::array<std::int32_t, 2> first{row.first_point(0), row.first_point(1)};
   const double kinetic = surfaces_.friction(first[0], first[1]);
-  const double sticking = surfaces_.static_friction(first[0], first[1]);
+  const double sticking = surfaces_.holding(first[0], first[1]);
   if (!(sticking > kinetic)) return kinetic;
   const bool slid = fresh_ ? along > rest : std::ranges::any_of(first, [this](std::int32_t point) {
     return slid_.contains(point);

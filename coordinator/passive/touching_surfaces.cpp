@@ -49,7 +49,7 @@ TouchingSurfaces::TouchingSurfaces(std::span<const TouchingPair> pairs, const Bo
     const std::size_t one = index(groups[k][0]), other = index(groups[k][1]);
     for (const std::size_t place : {one * ports_.size() + other, other * ports_.size() + one}) {
       pair_friction_[place] = pairs[k].friction;
-      pair_static_[place] = pairs[k].static_friction;
+      pair_static_[place] = pairs[k].holding;
       pair_restitution_[place] = pairs[k].restitution;
     }
   }

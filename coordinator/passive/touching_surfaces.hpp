@@ -17,7 +17,7 @@ namespace abut {
 /// which they part where neither deforms, and the coefficient of what sticks, if that is larger.
 struct TouchingPair {
   std::array<Side, 2> sides;
-  double friction = 0.0, restitution = 0.0, static_friction = 0.0;
+  double friction = 0.0, restitution = 0.0, holding = 0.0;
 };
 
 /// All surfaces of a run that may touch, as one skin: points of all ports, one group per port.
@@ -57,7 +57,7 @@ class TouchingSurfaces {
     return friction_of(skin_.group[one], skin_.group[other]);
   }
   /// The same of what sticks: as large, or larger.
-  double static_friction(std::int32_t one, std::int32_t other) const {
+  double holding(std::int32_t one, std::int32_t other) const {
     return std::max(
         friction(one, other),
         pair_static_[index(skin_.group[one]) * ports_.size() + index(skin_.group[other])]);

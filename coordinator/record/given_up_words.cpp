@@ -33,7 +33,8 @@ std::string windows_words(const GivenUp& up, std::int64_t windows) {
   std::string text = share(up.windows, windows) + " of the windows were solved passively";
   const bool rests = up.unbalanced < trusted;
   if (up.statics)
-    text += rests ? ", without inertia, by forces on nodes that are right to some hundredths"
+    text += rests ? ", without inertia, by forces on nodes that are right to some hundredths where "
+                    "faces press, and less where edges press on few cells"
                   : ", without inertia, by forces on nodes that cannot be relied on";
   if (up.halved_windows > 0)
     text += fmt::format(", {} in shorter steps", share(up.halved_windows, windows));

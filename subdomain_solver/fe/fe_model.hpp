@@ -9,7 +9,6 @@
 #include "subdomain_solver/fe/batched_cells.hpp"
 #include "subdomain_solver/fe/batched_layer.hpp"
 #include "subdomain_solver/fe/cell_answers.hpp"
-#include "subdomain_solver/fe/mesh.hpp"
 #include "subdomain_solver/fe/node_frame.hpp"
 #include "subdomain_solver/model.hpp"
 
@@ -42,15 +41,14 @@ class FeModel final : public Model {
   /// Moves the mass of these dofs (sorted) to those of the others of their cells, direction by
   /// direction (the surface layer, [M.85]), once, before anything asks for a mass; cells that have
   /// no others give theirs to the nearest nodes that have some. `held`: dofs (sorted) whose motion
-  /// is prescribed, which are no coordinates of the layer. Throws InputError where no node is left,
-  /// or less than `least_inertia` of the moments of inertia; all masses are as before then.
+  /// is prescribed, no coordinates of the layer. Throws InputError where no node is left, or less
+  /// than `least_inertia` of the moments of inertia; all masses are as before then.
   void make_massless(std::vector<int> bare, const std::vector<int>& held,
                      double least_inertia = 0.0);
 
   /// [kg] (dofs) lumped, as if none were massless, with the centre that the layer leaves [M.150].
   const Vector& whole_mass() const { return whole_.size() > 0 ? whole_ : lumped_; }
-  /// [kg] (dofs, dofs) consistent, as if none were massless.
-  SparseMatrix whole_consistent_mass() const;
+  SparseMatrix whole_consistent_mass() const;  // [kg] (dofs, dofs) as if none were massless
   /// [kg] (dofs, dofs) that coordinates without mass, the rows, gave to others.
   SparseMatrix given_mass() const;
   double inertia_left() const { return inertia_left_; }  // [M.162]; 1 of what is held or round

@@ -92,6 +92,7 @@ TEST(PassiveModes, OfAHeldBeamMeetWhatTheBeamMeets) {
     }
     EXPECT_GT(compared, 4);
     EXPECT_GT(most, 1.0);
+    // Of sums of ten-thousand products, by modes that are found to 1e-10.
     EXPECT_LT(error, 1.0e-8 * most);
   }
 }

@@ -177,6 +177,7 @@ TEST(Restitution, ImpulsesAreTheMomentumThatTheyMade) {
     ASSERT_TRUE(result->completed()) << result->end.reason;
     const double made = 10.0 * result->measure("body.box.velocity.y.mean") + weight * end;
     const std::string name = law.empty() ? "everything" : "under";
+    // Sums over 200 steps.
     EXPECT_NEAR(result->measure("contact." + name + ".impulse"), made, 1.0e-9 * made);
   }
 }

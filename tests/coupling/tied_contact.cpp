@@ -350,7 +350,8 @@ std::string halves_in_flight(const char* law, const char* scheme, double step, i
       R"(time: {{begin: 0.0, end: 0.04, window: 4.0e-4}}
 bodies:
   wall:
-    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [1, 1], elements: [1, 1]}}}}}}}}
+    model:
+      rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [1, 1], elements: [1, 1]}}}}}}
     initial: {{position: [9.0, 0.0]}}
     ports: {{face: {{side: boundary}}}}
 {}{}contact: {{everything: {{}}}}

@@ -69,7 +69,9 @@ TEST(GivenUp, TellsWhereStaticsDidNotRest) {
   EXPECT_EQ(
       Told().words(up),
       "3 % of the windows were solved passively, without inertia, by forces on nodes that "
-      "are right to some hundredths, and after 4 of their steps bodies did not rest yet: "
+      "are right to some hundredths where faces press, and less where edges press on few cells, "
+      "and "
+      "after 4 of their steps bodies did not rest yet: "
       "forces that were not in balance are up to 7 % of the most that a step began with; work "
       "that is told of them is of bodies on their way to rest, so the account of energy stays "
       "open; smaller windows and steps would leave more of them to the accurate method");
