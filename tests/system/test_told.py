@@ -185,7 +185,7 @@ bodies:
     integrator: {newmark: {step: 3.0e-5}}
     initial: {velocity: [0.0, 1.0]}
     ports: {skin: boundary}
-    contact_layer: massless  # of two cells, which leave few of the moments of inertia
+    contact_layer: {massless: {required: true}}  # of two cells, which leave few moments of inertia
 interfaces:
   blow: {sides: [upper.skin, lower.skin], contact: {}}
 """, encoding="utf-8")
