@@ -175,9 +175,11 @@ void MasslessSpec::fields(Fields& f) {
       "directions", normal_alone, {"all", "normal"},
       "in which nodes of surfaces have no mass; normal: of flat sides along the axes, which keep "
       "the mass that moves along them: for faces that yield and spread");
-  f.optional("required", required, "",
-             "refusal of a solid that has no free node inside to take the surface's mass; else its "
-             "surface keeps it, and contact is in its passive form");
+  f.optional(
+      "required", required, "",
+      "refusal of a solid that has no free node inside to take the surface's mass, and a layer "
+      "whatever it leaves of the moments of inertia; else, and where less than 15 % of these "
+      "were left, the surface keeps its mass, and contact is in its passive form");
 }
 
 void MassiveSpec::fields(Fields& f) {
