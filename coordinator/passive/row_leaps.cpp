@@ -12,7 +12,7 @@ namespace abut {
 namespace {
 
 /// Components: more are left to sweeps, as their matrix is dense.
-constexpr std::size_t most_at_once = 150;
+constexpr std::size_t most_at_once = 60;
 /// Of what a row holds along its surfaces at most: from there on it slides.
 constexpr double slides_from = 1.0 - 1.0e-9;
 /// Of the rows' largest: what changes velocities by less are rows that say the same, which do not
