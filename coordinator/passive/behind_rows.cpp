@@ -401,11 +401,8 @@ int BehindRows::check(SkinTrees& trees, const Places& from, const Places& to,
       way = way_out(k, to);
     if (way.rank == 0 || !can_press(surfaces_, way.row)) continue;
     if (!what.is_edge() && !stays(trees, to, what, way, 0.0)) continue;
-    const FeaturePoints x = abut::places(way.row.features, from);
     const double gap = way.row.gap;
-    way.row.gap = 0.0;
-    for (std::size_t i = 0; i < 4; ++i)
-      way.row.gap += way.row.weights[i] * way.row.normal.dot(x[i]);
+    way.row.gap = gap_at(way.row, from);
     if (gap > std::min(way.row.gap, 0.0) - deeper_by * thickness_) continue;
     ++deeper;
     rows.push_back(held_behind(surfaces_, way.row, from));

@@ -89,10 +89,8 @@ int CrossingRims::check(const Places& from, const Places& to,
     const EdgePoints one{p[0], p[1]}, other{p[2], p[3]};
     const std::optional<DistanceRow> then = edge_row(sides_, one, other, to);
     if (!then || !can_press(surfaces_, *then)) continue;
-    const FeaturePoints x = abut::places(then->features, from);
     DistanceRow row = *then;
-    row.gap = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) row.gap += row.weights[i] * row.normal.dot(x[i]);
+    row.gap = gap_at(row, from);
     if (then->gap > std::min(row.gap, 0.0) - deeper_by * thickness_) continue;
     ++deeper;
     rows.push_back(held_behind(surfaces_, row, from));

@@ -43,6 +43,13 @@ bool is_rim(const TouchingSurfaces& surfaces, const SkinSides& sides, const Skin
              half_a_rim;
 }
 
+double gap_at(const DistanceRow& row, const std::vector<Eigen::Vector3d>& places) {
+  const FeaturePoints x = abut::places(row.features, places);
+  double gap = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) gap += row.weights[i] * row.normal.dot(x[i]);
+  return gap;
+}
+
 bool can_press(const TouchingSurfaces& surfaces, const DistanceRow& row) {
   return std::ranges::any_of(row.features.points, [&surfaces](std::int32_t point) {
     return point >= 0 && !surfaces.stands(point);

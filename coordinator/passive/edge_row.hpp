@@ -31,6 +31,9 @@ bool is_rim(const TouchingSurfaces& surfaces, const SkinSides& sides, const Skin
             const std::vector<Eigen::Vector3d>& places, const EdgePoints& edge,
             const Eigen::Vector3d& at);
 
+/// [m] of a row, along its normal, where its points are in `places`.
+double gap_at(const DistanceRow& row, const std::vector<Eigen::Vector3d>& places);
+
 /// Whether a row presses on anything that moves.
 bool can_press(const TouchingSurfaces& surfaces, const DistanceRow& row);
 

@@ -1,7 +1,5 @@
 #include "coordinator/record/taken_back.hpp"
 
-#include <cmath>
-
 #include "base/index.hpp"
 
 namespace abut {
