@@ -44,6 +44,7 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
   // Means that end leave slopes behind.
   if (std::ranges::any_of(light_before_, [](double force) { return force != 0.0; }))
     forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
+  lay_slopes(boundary);
 }
 
 void PortForces::add_constant(const Waveform& imposed, std::size_t port, bool first) {
@@ -124,16 +125,67 @@ void PortForces::light_means(int i, std::vector<double>& out) const {
 /// What has no mass would jump with forces that are constant in steps, and each jump would take
 /// half of the change of the force, times that of the place, from the pair. With the slope of the
 /// last two means it jumps by what the slope changes  [M.164].
+void PortForces::lay_slopes(const std::vector<BoundaryData>& boundary) {
+  rises_.clear();
+  levels_.clear();
+  if (light_.empty() || !acts()) return;
+  rises_.resize(index(grid_.count + 1) * light_.size(), 0.0);
+  levels_.resize(rises_.size(), 0.0);
+  follow_own_steps();
+  for (const std::size_t port : joined_)
+    if (port < boundary.size()) follow_steps_of(boundary[port].forces, port);
+}
+
+void PortForces::follow_own_steps() {
+  for (int i = 1; i <= grid_.count; ++i)
+    for (std::size_t k = 0; k < light_.size(); ++k) {
+      const auto mean = [&](int at) { return forces_[index(at) * map_.values() + light_[k]]; };
+      rises_[index(i) * light_.size() + k] = mean(i) - (i == 1 ? light_before_[k] : mean(i - 1));
+    }
+}
+
+/// A partner of longer steps has forces that are constant in those: lines in its steps, not in the
+/// body's own, do not jump. Where several partners act on one port, those in the body's stay.
+void PortForces::follow_steps_of(const std::vector<Waveform>& imposed, std::size_t port) {
+  const Waveform* only = nullptr;
+  for (const Waveform& force : imposed) {
+    if (force.empty()) continue;
+    if (only != nullptr) return;
+    only = &force;
+  }
+  if (only == nullptr || only->support != ForceSupport::step || !only->points.empty() ||
+      only->size() < 2 || only->size() > index(grid_.count))
+    return;
+  const std::size_t first = map_.first(port), width = map_.width(port);
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    if (light_[k] < first || light_[k] >= first + width) continue;
+    const auto mean = [&](std::size_t at) { return only->f[at * width + light_[k] - first]; };
+    for (int i = 1; i <= grid_.count; ++i) {
+      const double begin = i == 1 ? grid_.begin : grid_.time(i - 1), end = grid_.time(i);
+      double rise = 0.0, level = 0.0;
+      for (std::size_t s = 1; s < only->size(); ++s) {
+        const double from = only->time[s - 1], until = only->time[s];
+        const double shared_from = std::max(from, begin), shared_until = std::min(until, end);
+        if (shared_until <= shared_from) continue;
+        const double slope = (mean(s) - (s == 1 ? light_before_[k] : mean(s - 1))) / (until - from);
+        rise += slope * (shared_until - shared_from);
+        level += slope * 0.5 * (shared_from + shared_until - from - until) *
+                 (shared_until - shared_from) / (end - begin);
+      }
+      rises_[index(i) * light_.size() + k] = rise;
+      levels_[index(i) * light_.size() + k] = level;
+    }
+  }
+}
+
 void PortForces::add_slopes(double time, std::vector<double>& out) const {
   const int i = std::min(substep_, grid_.count);
-  if (i == 0) return;
+  if (i == 0 || rises_.empty()) return;
   const double begin = i == 1 ? grid_.begin : grid_.time(i - 1);
   const double share = std::clamp((time - begin) / grid_.length(i), 0.0, 1.0);
   for (std::size_t k = 0; k < light_.size(); ++k) {
-    const double before =
-        i == 1 ? light_before_[k] : forces_[index(i - 1) * map_.values() + light_[k]];
-    double& force = out[light_[k]];  // the mean
-    force += (share - 0.5) * (force - before);
+    const std::size_t here = index(i) * light_.size() + k;
+    out[light_[k]] += levels_[here] + (share - 0.5) * rises_[here];  // to the mean
   }
 }
 

@@ -16,7 +16,7 @@ namespace abut {
 /// values at their ends, equal to those of the waveform where it is sampled there, else means over
 /// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
 /// of PortMap. On ports that are joined, forces are constant in every substep: means over it
-/// [M.107]; on nodes without mass, linear in it [M.164].
+/// [M.107]; on nodes without mass, linear in the partner's steps [M.164].
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.
@@ -54,6 +54,9 @@ class PortForces final : public Load {
   void add_sampled(const Waveform& imposed, std::size_t port, bool first);
   bool joined(std::size_t port) const { return std::ranges::find(joined_, port) != joined_.end(); }
   void add_constant(const Waveform& imposed, std::size_t port, bool first);
+  void lay_slopes(const std::vector<BoundaryData>& boundary);
+  void follow_own_steps();
+  void follow_steps_of(const std::vector<Waveform>& imposed, std::size_t port);
   void add_slopes(double time, std::vector<double>& out) const;
   void add_swing(const Waveform& imposed, double now, std::size_t row, std::vector<double>& to,
                  std::size_t size);
@@ -71,6 +74,8 @@ class PortForces final : public Load {
   std::vector<std::size_t> joined_;   // ports
   std::vector<std::size_t> light_;    // values of joined ports on nodes without mass
   std::vector<double> light_before_;  // [N] (light)
+  std::vector<double> rises_;         // [N] (substeps + 1, light): of the slope, from begin to end
+  std::vector<double> levels_;        // [N] the same: beside the mean in the middle of the substep
   int substep_ = 1;
 };
 

@@ -362,12 +362,12 @@ interfaces: {{joint: {{sides: [lower.joint, upper.joint], tied: {{}}}}}}
 }
 
 /// With forces constant in steps the rims took 10 % in 100 steps and 6 % in 200, whichever the
-/// steps of the other half are. Slopes of the last two means leave the rest of second order where
-/// steps are alike; of a side that steps within the joint's steps half of the means change at once.
+/// steps of the other half are. Lines in the joint's steps, through the last two means, leave the
+/// rest of second order, of a side that steps within those too.
 TEST(TiedContact, RimsWithoutMassTakeLittle) {
   for (const char* law : {"linear_elastic", "neo_hookean"}) {
     for (const char* scheme : {"central_difference", "newmark"}) {
-      for (const int ratio : {1, 2}) {
+      for (const int ratio : {1, 2, 3, 8}) {
         SCOPED_TRACE(fmt::format("{} {} 1:{}", law, scheme, ratio));
         double before = 0.0;
         for (const double step : {4.0e-4, 2.0e-4}) {
@@ -375,9 +375,9 @@ TEST(TiedContact, RimsWithoutMassTakeLittle) {
           ASSERT_TRUE(run->completed());
           const double lost = -run->measure("energy.total.relative_drift_end");
           EXPECT_GT(lost, 0.0);
-          EXPECT_LT(lost, ratio == 1 ? 2.0e-3 : 7.5e-2);
+          EXPECT_LT(lost, 2.0e-3);
           if (before > 0.0) {
-            EXPECT_LT(lost, (ratio == 1 ? 0.27 : 0.55) * before);
+            EXPECT_LT(lost, 0.27 * before);
           }
           before = lost;
         }
