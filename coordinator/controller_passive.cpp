@@ -315,6 +315,7 @@ GivenUp Controller::given_up() const {
           .switched = passive.switched,
           .push_out = passive.push_out,
           .taken_back = passive.taken_back,
+          .owed = passive.owed,
           .repaid = passive.repaid,
           .deepest = passive.deepest,
           .largest = std::max(

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-
 namespace abut {
 
 namespace {
@@ -50,16 +49,6 @@ constexpr double holds_at_once = 1.0e-6;
 /// Of the largest energy: what ties may do in a step. They take back what sides part by, on which
 /// their forces do some work, to and fro.
 constexpr double work_of_ties = 1.0e-6;
-
-/// Debts to rows [J], all cut alike to what there is: what was paid to part what is too near is not
-/// given back.
-std::map<std::int32_t, double> affordable(std::map<std::int32_t, double> debts, double there) {
-  double owed = 0.0;
-  for (const auto& [point, joules] : debts) owed += joules;
-  if (owed <= there) return debts;
-  for (auto& [point, joules] : debts) joules *= std::max(0.0, there) / owed;
-  return debts;
-}
 
 std::vector<int> owners_of(const PassiveTies& ties, int bodies) {
   std::vector<int> owners;

@@ -79,6 +79,7 @@ class CommonStep {
   void state(Archive& archive);
 
  private:
+  using Debts = std::map<std::int32_t, double>;  // [J] to rows, by their first points
   using Places = std::vector<Eigen::Vector3d>;
 
   std::optional<Refusal> iterate();
@@ -107,6 +108,7 @@ class CommonStep {
   bool is_blow(const DistanceRow& row, double& approach) const;
   void count_friction(const DistanceRow& row, PassiveLedger& ledger) const;
   void share_out_loss(const DistanceRow& row, double loss, PassiveLedger& ledger) const;
+  static Debts affordable(Debts debts, double there);
   static double farthest_of(std::span<const PassiveReply> replies);  // [m]
   static double own_energy(const BodyRecord& record);                // [J] of a body
   static double motion_of(std::span<const PassiveReply> replies);    // [J] of all bodies together
@@ -138,8 +140,8 @@ class CommonStep {
   double most_way_ = std::numeric_limits<double>::infinity();  // [m] of a point
   double fine_ = 1.0;                                          // times what fits, in this step
   std::map<DistanceRow::Key, Eigen::Vector3d> warm_;           // impulses of the last step [N s]
-  std::map<std::int32_t, double> owed_;                        // [J] to rows, by their first points
-  std::map<std::int32_t, double> unclaimed_;                   // of it, by no row of this step yet
+  Debts owed_;                                                 // [J] to rows, by their first points
+  Debts unclaimed_;                                            // of it, by no row of this step yet
   RigidImpacts impacts_;
   SlidingPoints sliding_;
   std::vector<double> energies_;                // [J] by body

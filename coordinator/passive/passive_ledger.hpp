@@ -21,6 +21,7 @@ struct PassiveLedger {
   double taken_back = 0.0;  // [J] that steps had given a body beside contact, no more
   double repaid = 0.0;      // [J] gained in accurate windows and taken back from bodies that touch
   double switched = 0.0;    // [J] lost where bodies changed their form
+  double owed = 0.0;  // [J] of normal contact that rows give back as they part, after the last step
   std::int64_t steps = 0, refused = 0, windows = 0, rigid = 0;
   // windows in which steps were halved, in which bodies were held rigid; times that the accurate
   // method had no answer
@@ -75,7 +76,7 @@ struct PassiveLedger {
   }
   /// What bodies without inertia give up is no energy of motion.
   void leave_out_energies() {
-    normal = impacts = friction = push_out = damped = taken_back = repaid = switched = 0.0;
+    normal = impacts = friction = push_out = damped = taken_back = repaid = switched = owed = 0.0;
     lost.clear();
     taken.clear();
     rubbed.clear();
@@ -95,6 +96,7 @@ struct PassiveLedger {
     archive.field("taken_back", taken_back);
     archive.field("repaid", repaid);
     archive.field("switched", switched);
+    archive.field("owed", owed);
     archive.field("steps", steps);
     archive.field("refused", refused);
     archive.field("windows", windows);

@@ -310,6 +310,7 @@ bool PassiveWay::leave(double time, double may_lose) {
     ledger_.switched += lost[index(b)];
     if (lost[index(b)] != 0.0) PassiveLedger::add(ledger_.taken, b, lost[index(b)]);
   }
+  ledger_.owed = 0.0;  // the accurate way does not know of it
   active_ = false;
   return true;
 }

@@ -32,6 +32,16 @@ double along_of(const DistanceRow& row, std::span<const Eigen::Vector3d> velocit
 
 }  // namespace
 
+/// Debts to rows [J], all cut alike to what there is: what was paid to part what is too near is not
+/// given back.
+CommonStep::Debts CommonStep::affordable(Debts debts, double there) {
+  double owed = 0.0;
+  for (const auto& [point, joules] : debts) owed += joules;
+  if (owed <= there) return debts;
+  for (auto& [point, joules] : debts) joules *= std::max(0.0, there) / owed;
+  return debts;
+}
+
 /// The account of every body: what its energy gained beside what its ports did.
 std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedger& ledger) {
   share_out_work();
@@ -84,6 +94,10 @@ std::optional<CommonStep::Refusal> CommonStep::accept(bool lenient, PassiveLedge
   }
   impacts_.next_step();
   sliding_.next_step();
+  ledger.owed = 0.0;
+  if (statics_) return std::nullopt;
+  for (const auto& [point, joules] : affordable(owed_, ledger.normal - ledger.push_out))
+    ledger.owed += joules;
   return std::nullopt;
 }
 

@@ -62,6 +62,9 @@ std::string joules_words(const GivenUp& up) {
   add(up.damped, "by damping");
   add(up.switched, "where bodies changed their form");
   if (!causes.empty()) text += " (" + causes + ")";
+  if (up.owed > little * std::abs(up.joules()))
+    text += fmt::format(", of which {:.3g} J are given back as bodies part that touch at the end",
+                        up.owed);
   if (up.friction != 0.0) text += fmt::format(", and friction took {:.3g} J", up.friction);
   return text;
 }
@@ -70,8 +73,9 @@ std::string joules_words(const GivenUp& up) {
 
 std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
   if (up.statics) return {};
-  // What rigid bodies lose to each other is restitution: no mesh and no step changes it.
-  const bool lost_much = up.joules() - up.impacts > nothing * up.largest;
+  // What rigid bodies lose to each other is restitution: no mesh and no step changes it. What is
+  // owed is not lost.
+  const bool lost_much = up.joules() - up.impacts - up.owed > nothing * up.largest;
   if (!lost_much && up.rigid_windows == 0) return {};
   // Normal contact loses the motion of the nodes that meet, and so do changes of form: their mass
   // falls with the mesh. What bodies lose that are held rigid falls with the steps.

@@ -108,6 +108,7 @@ struct GivenUp {
   // form; given to part bodies
   double normal = 0.0, impacts = 0.0, friction = 0.0, damped = 0.0, switched = 0.0, push_out = 0.0;
   double taken_back = 0.0;  // [J] that passive steps gave bodies beside contact, and took again
+  double owed = 0.0;        // [J] of normal that what touches at the end gives back as it parts
   double repaid = 0.0;   // [J] that accurate windows gained and that was taken back at their ends
   double deepest = 0.0;  // [m] behind a partner's surface
   // [J] the largest kinetic and stored energy of the run, or all that went into it where that is

@@ -176,8 +176,8 @@ struct Judge : Observer {
       run.overlaps.push_back(fmt::format("bodies {} and {} by {:.2g} m at {:.4g} s",
                                          overlap.body[0], overlap.body[1], overlap.depth,
                                          overlap.time));
-    if (run.scale > 0.0)  // no body tells of them
-      run.loss -= (end.given_up.friction + end.given_up.impacts) / run.scale;
+    if (run.scale > 0.0)  // no body tells of them; what is owed is not lost
+      run.loss -= (end.given_up.friction + end.given_up.impacts + end.given_up.owed) / run.scale;
     run.passive = end.windows > 0 ? double(end.given_up.windows) / double(end.windows) : 0.0;
     run.hashes = end.body_hashes;
   }

@@ -13,7 +13,7 @@ struct TrialRun {
   std::string status;     // completed, failed, interrupted, refused, or threw
   std::string reason;     // in words, where it is not completed
   double growth = 0.0;    // of energy that nobody gave, over the most that there was
-  double loss = 0.0;      // of energy that nobody took, at the end; below 0: growth
+  double loss = 0.0;      // of energy that nobody took or owes, at the end; below 0: growth
   double momentum = 0.0;  // largest change of their sum over the largest sum of their sizes
   double angular = 0.0;   // the same of the angular momentum; 0: a body does not tell it
   bool finite = true;

@@ -200,7 +200,7 @@ void Table::add(const RandomScene& scene, const Verdict& verdict) {
   pairs.differences.push_back(verdict.difference);
 }
 
-/// Beside friction and plasticity, in percent of the most there was.
+/// Beside friction, plasticity and what is owed at the end, in percent of the most there was.
 std::string Table::losses() const {
   std::string out =
       "\n| schemes that conserve | scenes | energy lost within .05 % | within .5 % | within 5 % | "

@@ -148,7 +148,7 @@ SUMMARY = {
         **dict.fromkeys(("passive_windows", "halved_windows", "rigid_windows", "unanswered"),
                         NUMBER),
         **dict.fromkeys(("joules", "largest_energy", "normal", "friction", "damped",
-                         "changes_of_form", "push_out", "repaid", "deepest"), VALUE),
+                         "changes_of_form", "push_out", "owed", "repaid", "deepest"), VALUE),
         **dict.fromkeys(("lost_by_body", "taken_from_body", "refused_by_body"), {"*": VALUE}),
         "words": TEXT}},
 }

@@ -202,6 +202,7 @@ def given_up_table(run: Run) -> str:
     largest = up.get("largest_energy")
     for key, words in (("joules", "given up"), ("normal", "in normal contact"),
                        ("push_out", "paid back to part what was too near"),
+                       ("owed", "given back as what touches at the end parts"),
                        ("damped", "by damping"),
                        ("changes_of_form", "where bodies changed their form"),
                        ("repaid", "gained in accurate windows and taken back"),
