@@ -23,6 +23,20 @@ bool is_loopback_address(std::string_view host) {
 
 }  // namespace
 
+std::string_view wrong_endpoint(std::string_view endpoint) {
+  constexpr std::string_view ipc = "ipc://", tcp = "tcp://";
+  if (endpoint.starts_with(ipc)) return endpoint.size() > ipc.size() ? "" : "name a path";
+  if (!endpoint.starts_with(tcp)) return "begin with tcp:// or ipc://";
+  const std::size_t colon = endpoint.rfind(':');
+  if (colon <= tcp.size()) return "end with a port, as in tcp://127.0.0.1:5555";
+  const std::string_view port = endpoint.substr(colon + 1);
+  if (port == "*") return "";
+  int number = -1;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  const bool whole = error == std::errc() && end == port.data() + port.size();
+  return whole && number >= 0 && number <= 65535 ? "" : "have a port from 0 to 65535";
+}
+
 bool is_local_endpoint(std::string_view endpoint) {
   if (endpoint.starts_with("ipc://")) return true;
   constexpr std::string_view tcp = "tcp://";

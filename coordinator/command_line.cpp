@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/build_info.hpp"
+#include "base/endpoint.hpp"
 
 namespace abut {
 namespace {
@@ -27,6 +28,13 @@ const std::array<std::pair<std::string, std::string>, 5> tools{{
 constexpr std::array<std::string_view, 10> own_verbs{
     "run",    "resume",    "check",       "split", "init",
     "keygen", "reference", "conformance", "slurm", "kubernetes"};
+
+const CLI::Validator endpoint_word(
+    [](const std::string& endpoint) {
+      const std::string wrong(wrong_endpoint(endpoint));
+      return wrong.empty() ? wrong : endpoint + " must " + wrong;
+    },
+    "", "endpoint_word");
 
 /// An empty path is most often a variable of a script that was never set.
 const CLI::Validator named_folder(
@@ -78,6 +86,7 @@ void add_await(CLI::App& verb, AwaitWords& await) {
                        "start no process: wait at this address for those of all bodies, which "
                        "somebody else starts, as abut slurm does")
            ->type_name("ENDPOINT")
+           ->check(endpoint_word)
            ->excludes(verb.get_option("--local"));
   verb.add_option("--keys", await.words.keys,
                   "folder with the keys of coordinator and processes (abut keygen)")

@@ -342,6 +342,7 @@ Controller::Judgement Controller::judge_trouble(const TimeWindow& window) {
     return {};
   }
   if (halvings_ < most_halvings()) return halved(window, text);
+  if (nearly_converged()) return {};
   if (attempt_.failed) return {Verdict::fail, window.end, text};
   return {Verdict::fail, window.end, text + "; " + sweeps_remedy(descriptions_of(bodies_))};
 }
@@ -355,6 +356,7 @@ Controller::Judgement Controller::halved(const TimeWindow& window, const std::st
 void Controller::accept(const TimeWindow& window) {
   for (const Island& island : partition_.islands()) schwarz_.accept(island);
   note_friction();
+  note_near(window);
   fill_reports(false);
   events_.settle(window, guard_.most());
   halvings_ = 0;
@@ -374,10 +376,6 @@ void Controller::end_window(const TimeWindow& window, EnergyGuard::Verdict energ
 }
 
 // ---- of a window --------------------------------------------------------------------------------
-
-bool Controller::Attempt::converged() const {
-  return std::ranges::all_of(reports, &SchwarzReport::converged);
-}
 
 /// As many as the horizon allows, and that do not pass the next windows whose fields are wanted.
 int Controller::windows_to_fly() {

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "contract/hand_over.hpp"
+#include "coordinator/attempt.hpp"
 #include "coordinator/contact_events.hpp"
 #include "coordinator/couple.hpp"
 #include "coordinator/energy_guard.hpp"
@@ -77,12 +78,6 @@ class Controller {
   std::function<void(const Pause&)> between_windows;
 
  private:
-  struct Attempt {  // of one window
-    std::optional<Failed> failed;
-    std::vector<SchwarzReport> reports;  // by island
-    bool converged() const;
-    std::string trouble(double tolerance) const;  // in words
-  };
   struct Judgement {
     // again: the same window, as joints have changed; cut: the same up to an earlier end; fail: the
     // run
@@ -130,6 +125,7 @@ class Controller {
   void fill_reports(bool flown);
   PairReport pair_report(const Joint& joint) const;
   void note_friction();
+  void note_near(const TimeWindow& window);
   double dissipated(const Joint& joint) const;
   void watch_energy(EnergyGuard::Verdict verdict);
   void watch_passing(std::int64_t windows_before);
@@ -137,6 +133,7 @@ class Controller {
   void look_for_passed();
   void judge(int body);
   bool may_go_passively() const;
+  bool nearly_converged() const;
   int most_halvings() const;
   bool may_refuse() const;
   std::string folded();

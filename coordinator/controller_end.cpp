@@ -21,21 +21,6 @@ constexpr double let_go = 0.95;
 
 }  // namespace
 
-std::string Controller::Attempt::trouble(double tolerance) const {
-  if (failed) return fmt::format("{}: {}", to_string(failed->cause), failed->detail);
-  FieldResiduals residual;
-  int iterations = 0;
-  for (const SchwarzReport& r : reports) {
-    if (r.converged) continue;
-    residual.include(r.residual);
-    iterations = r.iterations;
-  }
-  const bool forces = residual.force == residual.largest() && residual.displacement <= tolerance;
-  return fmt::format(
-      "Schwarz iteration not converged after {} iterations: residual{} {:.3g}, tolerance {:.3g}",
-      iterations, forces ? " of forces" : "", residual.largest(), tolerance);
-}
-
 /// Springs of bodies that lean on something slender let go of little in a window: more short ones
 /// come before the end, unless they let go of nothing. before: what they bore before the window.
 Controller::Judgement Controller::judge_springs(const TimeWindow& window, double before) {

@@ -57,6 +57,20 @@ int Controller::most_halvings() const {
   return may_go_passively() && passive_.statics() && !attempt_.failed ? of_statics : 0;
 }
 
+/// Not in statics: what is left of a residual is work there, and shorter windows were tried.
+bool Controller::nearly_converged() const {
+  return may_go_passively() && !passive_.statics() && attempt_.nearly();
+}
+
+void Controller::note_near(const TimeWindow& window) {
+  if (attempt_.converged()) return;
+  if (passive_.ledger().near_windows == 0)
+    narrator_.warning(window.begin, "",
+                      attempt_.trouble(scene_.schwarz.tolerance) +
+                          "; such windows are accepted, and counted (accuracy.given_up)");
+  passive_.count_near(attempt_.missed().largest());
+}
+
 /// Schemes of finite strain make energy in steps that are long for a body's waves and turns: what
 /// would end the run is gone the other way.
 std::optional<Failed> Controller::made_by_themselves(const TimeWindow& window) const {
@@ -302,6 +316,8 @@ GivenUp Controller::given_up() const {
           .halved_windows = passive.halved_windows,
           .rigid_windows = passive.rigid_windows,
           .unanswered = passive.unanswered,
+          .near_windows = passive.near_windows,
+          .missed = passive.missed,
           .steps = passive.steps,
           .refused = passive.refused,
           .rigid = passive.rigid,

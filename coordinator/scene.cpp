@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/endpoint.hpp"
 #include "base/input_errors.hpp"
 #include "base/yaml_copies_spec.hpp"
 #include "base/yaml_fields.hpp"
@@ -218,8 +219,8 @@ void NetworkSpec::fields(Fields& f) {
          "way of the messages of bodies: memory that the coordinator shares with each abut-solver "
          "that it starts, and sockets of ZeroMQ elsewhere; or sockets for all. Results are the "
          "same");
-  f.check(endpoint.starts_with("tcp://") || endpoint.starts_with("ipc://"), "endpoint",
-          fmt::format("must begin with tcp:// or ipc://, but is {}", endpoint),
+  const std::string_view wrong = wrong_endpoint(endpoint);
+  f.check(wrong.empty(), "endpoint", fmt::format("must {}, but is {}", wrong, endpoint),
           "Give for example tcp://127.0.0.1:5555.");
 }
 

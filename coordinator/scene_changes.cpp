@@ -82,6 +82,21 @@ void check_swap(const Document& document, const std::string& path, const std::st
                 "Let the body move in one stage, and change its model in the next."});
 }
 
+/// Where bodies move on from what they do, nothing takes a velocity of their own.
+void check_velocity(const Document& document, const std::string& path, const std::string& body,
+                    InputErrors& errors) {
+  const std::string own = join_path("bodies", body);
+  const std::string velocity = join_path(join_path(path, own), "initial.velocity");
+  if (!document.has(velocity) || document.chooses(join_path(own, "integrator"), "quasi_static"))
+    return;
+  errors.add(
+      {"has no effect: the body has not stood in statics in the stage before, and goes on as "
+       "it moves",
+       document.where(velocity),
+       "Leave it out; or let the body stand before (integrator: quasi_static), or begin the "
+       "scene with it."});
+}
+
 bool named(const std::string& key, std::span<const std::string> overrides) {
   return std::ranges::any_of(
       overrides, [&key](const std::string& text) { return text.substr(0, text.find('=')) == key; });
@@ -119,8 +134,10 @@ void check_stages(const Document& document) {
                   "Give time: {end: ...}, after the end of the stage before."});
     check_stage(document, path, "", errors);
     if (name == document.keys("stages").front())  // later ones are looked at in their turn
-      for (const std::string& body : document.keys(join_path(path, "bodies")))
+      for (const std::string& body : document.keys(join_path(path, "bodies"))) {
         check_swap(document, path, body, errors);
+        check_velocity(document, path, body, errors);
+      }
   }
   errors.raise();
 }

@@ -9,9 +9,9 @@
 namespace abut {
 
 std::vector<std::string> stabilisation_measure_names(int dim) {
-  std::vector<std::string> names = {"stabilisation.share", "stabilisation.share_max",
-                                    "stabilisation.at_most", "stabilisation.work",
-                                    "stabilisation.force"};
+  std::vector<std::string> names = {"stabilisation.share",       "stabilisation.share_max",
+                                    "stabilisation.at_most",     "stabilisation.work",
+                                    "stabilisation.share_along", "stabilisation.force"};
   for (int i = 0; i < dim; ++i) names.push_back(fmt::format("stabilisation.force.{}", "xyz"[i]));
   return names;
 }
@@ -27,7 +27,7 @@ std::vector<double> stabilisation_measures(const FeModel& model, const QuasiStat
   for (std::size_t k = 0; k < index(force.size()); ++k)
     sum[k % dim] += force(static_cast<Eigen::Index>(k));
   std::vector<double> out = {told.share, told.share_most, statics.stabilisation()->at_most(),
-                             told.work, told.force};
+                             told.work,  told.along,      told.force};
   out.insert(out.end(), sum.begin(), sum.begin() + static_cast<std::ptrdiff_t>(dim));
   return out;
 }

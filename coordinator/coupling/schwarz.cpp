@@ -15,8 +15,8 @@ namespace {
 /// Islands of the past whose secants are kept. Many bodies hang together in ever new ways.
 constexpr std::size_t most_kept = 256;
 
-SchwarzReport report_of(const Iterate& it) {
-  return {it.converged, it.sweep, it.residual, it.contradiction};
+SchwarzReport report_of(const Iterate& it, const Net& net) {
+  return {it.converged, it.sweep, it.residual, net.contact_beside_ties(), it.contradiction};
 }
 
 void restore(const Island& island, Bodies& bodies) {
@@ -61,9 +61,9 @@ std::variant<SchwarzReport, Failed> Schwarz::solve(const TimeWindow& window, con
       if (!steps.back(it_)) return *failed;
     } else {
       see(*net, bodies);
-      if (steps.enough(it_)) return report_of(it_);
+      if (steps.enough(it_)) return report_of(it_, *net);
       steps.next(it_, bodies);
-      if (steps.arrived(it_)) return report_of(it_);
+      if (steps.arrived(it_)) return report_of(it_, *net);
     }
     restore(island, bodies);
   }

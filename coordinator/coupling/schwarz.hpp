@@ -22,6 +22,7 @@ struct SchwarzReport {
   bool converged = false;
   int iterations = 0;         // sweeps: every body of the island advanced once in each
   FieldResiduals residual;    // of the last sweep
+  bool beside_ties = false;   // contact presses on bodies that are joined
   std::string contradiction;  // of ties, in words for people: no sweep makes it converge
 };
 

@@ -26,10 +26,12 @@ struct PassiveLedger {
   // windows in which steps were halved, in which bodies were held rigid; times that the accurate
   // method had no answer
   std::int64_t halved_windows = 0, rigid_windows = 0, unanswered = 0;
-  double deepest = 0.0;        // [m] behind a partner's surface
-  double shortest_step = 0.0;  // [s]; 0: none was taken
-  std::int64_t unsettled = 0;  // steps of statics after which bodies did not rest yet
-  double unbalanced = 0.0;     // most that such a step left, over the most that any began with
+  std::int64_t near_windows = 0;  // of the accurate method that have nearly converged
+  double missed = 0.0;            // most of the residual in such a window
+  double deepest = 0.0;           // [m] behind a partner's surface
+  double shortest_step = 0.0;     // [s]; 0: none was taken
+  std::int64_t unsettled = 0;     // steps of statics after which bodies did not rest yet
+  double unbalanced = 0.0;        // most that such a step left, over the most that any began with
 
   // By body, as long as one has any. [J] of its deforming side's normal contact; [J] that damping
   // and changes of form took from it; steps that it refused
@@ -60,7 +62,7 @@ struct PassiveLedger {
     for (std::int64_t PassiveLedger::*count :
          {&PassiveLedger::steps, &PassiveLedger::refused, &PassiveLedger::windows,
           &PassiveLedger::rigid, &PassiveLedger::halved_windows, &PassiveLedger::rigid_windows,
-          &PassiveLedger::unanswered, &PassiveLedger::unsettled})
+          &PassiveLedger::unanswered, &PassiveLedger::unsettled, &PassiveLedger::near_windows})
       all.*count += earlier.*count;
     for (std::vector<double> PassiveLedger::*of :
          {&PassiveLedger::lost, &PassiveLedger::taken, &PassiveLedger::refused_by})
@@ -68,6 +70,7 @@ struct PassiveLedger {
         add(all.*of, static_cast<int>(b), (earlier.*of)[b]);
     for (const auto& [pair, heat] : earlier.rubbed) all.rubbed[pair] += heat;
     all.deepest = std::max(deepest, earlier.deepest);
+    all.missed = std::max(missed, earlier.missed);
     all.unbalanced = std::max(unbalanced, earlier.unbalanced);
     const double before = earlier.shortest_step;
     if (before > 0.0 && (shortest_step == 0.0 || before < shortest_step))
@@ -104,6 +107,8 @@ struct PassiveLedger {
     archive.field("halved_windows", halved_windows);
     archive.field("rigid_windows", rigid_windows);
     archive.field("unanswered", unanswered);
+    archive.field("near_windows", near_windows);
+    archive.field("missed", missed);
     archive.field("lost", lost);
     archive.field("taken", taken);
     archive.field("refused_by", refused_by);

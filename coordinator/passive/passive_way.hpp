@@ -55,6 +55,10 @@ class PassiveWay {
   /// of the state after it. Returns what each of them gave.
   std::vector<double> repay(std::span<const int> bodies, double joules);
   /// The window in which they did is accepted.
+  void count_near(double missed) {
+    ++ledger_.near_windows;
+    ledger_.missed = std::max(ledger_.missed, missed);
+  }
   void count_repaid(double joules) { ledger_.repaid += joules; }
   /// They have left, and velocities of joined sides were made one, at this cost [J].
   void rejoin(double lost);

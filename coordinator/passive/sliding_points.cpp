@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace abut {
@@ -19,10 +20,12 @@ double SlidingPoints::coefficient(const DistanceRow& row, double along, double r
   const double kinetic = surfaces_.friction(first[0], first[1]);
   const double sticking = surfaces_.holding(first[0], first[1]);
   if (!(sticking > kinetic)) return kinetic;
-  const bool slid = fresh_ ? along > rest : std::ranges::any_of(first, [this](std::int32_t point) {
-    return slid_.contains(point);
-  });
-  return slid ? kinetic : sticking;
+  const auto any = [&first](const std::set<std::int32_t>& of) {
+    return std::ranges::any_of(first, [&of](std::int32_t point) { return of.contains(point); });
+  };
+  if (any(slid_)) return kinetic;
+  if (any(held_)) return sticking;
+  return along > rest ? kinetic : sticking;
 }
 
 void SlidingPoints::see(const DistanceRow& row, double along, double rest) {
@@ -40,23 +43,21 @@ void SlidingPoints::next_step() {
   for (const std::int32_t point : noted_) waited_.erase(point);
   slid_.merge(noted_);
   noted_.clear();
-  stuck_.clear();
-  fresh_ = false;
+  held_ = std::exchange(stuck_, {});
 }
 
 void SlidingPoints::clear() {
-  for (std::set<std::int32_t>* points : {&slid_, &waited_, &noted_, &stuck_}) points->clear();
-  fresh_ = true;
+  for (std::set<std::int32_t>* points : {&slid_, &waited_, &held_, &noted_, &stuck_})
+    points->clear();
 }
 
 void SlidingPoints::state(Archive& archive) {
-  for (std::set<std::int32_t>* points : {&slid_, &waited_}) {
+  for (std::set<std::int32_t>* points : {&slid_, &waited_, &held_}) {
     std::vector<double> list(points->begin(), points->end());
     archive.field("points", list);
     points->clear();
     for (const double point : list) points->insert(static_cast<std::int32_t>(point));
   }
-  archive.field("fresh", fresh_);
 }
 
 }  // namespace abut

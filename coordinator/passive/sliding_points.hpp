@@ -10,8 +10,8 @@
 namespace abut {
 
 /// Where what sticks has a coefficient of its own, which one a row has in a step: that of sliding
-/// if one of its first points slid in the step before, else that of sticking [M.126]. When the
-/// passive way begins, what moves along faster than what rests slides.
+/// if one of its first points slid in the step before, else that of sticking where one stuck in it
+/// [M.126]. What was not pressed in it slides where it moves along faster than what rests.
 class SlidingPoints {
  public:
   explicit SlidingPoints(const TouchingSurfaces& surfaces) : surfaces_(surfaces) {}
@@ -33,8 +33,8 @@ class SlidingPoints {
   const TouchingSurfaces& surfaces_;
   std::set<std::int32_t> slid_;           // in the step before
   std::set<std::int32_t> waited_;         // of these, where nothing pressed in it
+  std::set<std::int32_t> held_;           // that stuck in the step before
   std::set<std::int32_t> noted_, stuck_;  // in this step
-  bool fresh_ = true;                     // no step has been seen since the passive way began
 };
 
 }  // namespace abut

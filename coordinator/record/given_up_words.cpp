@@ -92,13 +92,16 @@ std::optional<GivenUpRemedy> remedy_of(const GivenUp& up) {
 std::string given_up_words(const GivenUp& up, std::int64_t windows,
                            std::span<const Description* const> bodies) {
   const bool repaid = up.repaid > nothing * up.largest;
-  if (up.windows == 0 && !repaid) return {};
+  if (up.windows == 0 && up.near_windows == 0 && !repaid) return {};
   std::string text;
   if (up.windows > 0) text = windows_words(up, windows);
   if (up.windows > 0)
     text += "; " + (up.statics ? "work that is told of them is of bodies on their way to rest, so "
                                  "the account of energy stays open"
                                : joules_words(up));
+  if (up.near_windows > 0)
+    text += fmt::format("{}{} of the windows have nearly converged, with residuals up to {:.2g}",
+                        text.empty() ? "" : "; ", share(up.near_windows, windows), up.missed);
   if (repaid)
     text += fmt::format(
         "{}{:.3g} J of {:.3g} J that accurate windows had gained were taken back from the swinging "

@@ -99,7 +99,9 @@ struct GivenUp {
   bool statics = false;  // no body has inertia: what contact takes then is no loss of motion
   // of passive windows all, those in which steps were halved, in which bodies were held rigid
   std::int64_t windows = 0, halved_windows = 0, rigid_windows = 0;
-  std::int64_t unanswered = 0;  // times that the accurate method had no answer
+  std::int64_t unanswered = 0;    // times that the accurate method had no answer
+  std::int64_t near_windows = 0;  // of it that have nearly converged, and were accepted
+  double missed = 0.0;            // most of the residual in such a window
   std::int64_t steps = 0, refused = 0, rigid = 0;
   double shortest_step = 0.0;  // [s]
   std::int64_t unsettled = 0;  // steps of statics after which bodies did not rest yet

@@ -176,6 +176,7 @@ std::string RunTable::text(const Measures& measures) const {
 
 std::string RunTable::times(std::span<const double> waited,
                             const std::vector<std::vector<std::size_t>>& processes) const {
+  if (start_.bodies.empty()) return {};  // the run was ended before it began
   std::vector<std::string> names;
   for (const Description* body : start_.bodies) names.push_back(body->name);
   const double wall = end_.wall_seconds;

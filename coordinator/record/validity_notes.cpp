@@ -26,6 +26,11 @@ constexpr double springs_may_take = 0.05;
 /// Of the forces on a body: springs that bear as much leave nothing to what may lie under it.
 constexpr double everything = 0.99;
 
+/// Of the forces along a motion: springs that bear as much are all that holds it.
+constexpr double nothing_else = 0.5;
+/// The same: less than this is not worth a word.
+constexpr double along_told = 0.1;
+
 /// 0: the body does not tell it.
 double told(const Description& body, std::span<const double> values, const std::string& name) {
   const auto found = std::find(body.measures.begin(), body.measures.end(), name);
@@ -49,12 +54,15 @@ std::string stabilised_motion(const Description& body, std::span<const double> v
 
 std::string stabilisation_note(const Description& body, std::span<const double> values) {
   const double work = told(body, values, "stabilisation.work");
-  std::string note =
-      fmt::format("'{}' is held as a whole by contact alone and was stabilised: at the end that "
-                  "bears {:.2g} % "
-                  "of the forces on it, {:.2g} % at most on the way; it took {:.3g} J",
-                  body.name, 100.0 * told(body, values, "stabilisation.share"),
-                  100.0 * told(body, values, "stabilisation.share_max"), work);
+  std::string note = fmt::format(
+      "'{}' is held as a whole by contact alone and was stabilised: at the end that "
+      "bears {:.3g} % "
+      "of the forces on it, {:.3g} % at most on the way; it took {:.3g} J",
+      body.name, 100.0 * told(body, values, "stabilisation.share"),
+      100.0 * told(body, values, "stabilisation.share_max"), work);
+  if (const double along = told(body, values, "stabilisation.share_along"); along > along_told)
+    note += fmt::format("; of the forces along the motion that it holds it bears {:.3g} %",
+                        100.0 * along);
   if (work > springs_may_take * told(body, values, "energy.stored"))
     note += fmt::format(
         ", which is much beside what the body stores: forces before the end are too large by what "
@@ -75,7 +83,14 @@ double borne_over_allowed(const Description& body, std::span<const double> value
 std::string unheld(const Description& body, std::span<const double> values) {
   const double share = told(body, values, "stabilisation.share");
   const double allowed = told(body, values, "stabilisation.at_most");
-  if (share <= allowed) return "";
+  const double along = told(body, values, "stabilisation.share_along");
+  if (share <= allowed && along <= std::max(nothing_else, allowed)) return "";
+  if (share <= allowed)
+    return fmt::format(
+        "body '{0}' is held against {1} by nothing: of the forces along this its stabilisation "
+        "bears {2:.3g} % at the end, however hard it is pressed across. Hold it by a constraint, "
+        "lay something in its way, or give friction where it is pressed",
+        body.name, stabilised_motion(body, values), 100.0 * along);
   if (share >= everything)
     return fmt::format(
         "body '{0}' presses on nothing at the end: its stabilisation bears all forces on it, {1:g} "

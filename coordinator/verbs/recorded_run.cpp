@@ -16,6 +16,7 @@
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/unit_words.hpp"
 #include "base/yaml_differences.hpp"
 #include "coordinator/controller.hpp"
@@ -112,7 +113,7 @@ int report(const RunPlan& plan, const RunOptions& options, const fs::path& direc
   bool pass = status == "completed";
   for (const ExpectationResult& result : results) pass = pass && result.pass;
   if (!options.quiet || (!pass && status != "interrupted")) {
-    fmt::print("\n{}\n\n", scene.meta.title);  // apart from the log lines above
+    fmt::print("\n{}\n\n", printable(scene.meta.title));  // apart from the log lines above
     if (status == "completed")
       fmt::print("{}", against_closed_form(plan.valid.form ? &*plan.valid.form : nullptr, measures,
                                            end, units));

@@ -1,5 +1,6 @@
 #include "coordinator/verbs/resume.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -23,12 +24,22 @@ namespace {
 /// The scene that goes on: that of the checkpoint, or one that may take its place.
 Document scene_of(const ResumeCommand& command, const Checkpoint& from) {
   std::vector<std::string> overrides = command.overrides;
-  if (!command.end.empty()) overrides.push_back("time.end=" + command.end);
+  const bool another_end = std::ranges::any_of(
+      overrides, [](const std::string& text) { return text.starts_with("time.end="); });
+  if (!command.end.empty()) {
+    if (another_end)
+      throw InputError("is given twice", "--end and --set time.end", "Give one of them.");
+    overrides.push_back("time.end=" + command.end);
+  }
   Document document =
       command.scene.empty()
           ? Document::from_text(command.directory + "/scene.resolved.yaml", from.scene, overrides)
           : Document::load(command.scene, overrides);
   check_changes(from.scene, resolved_text(read_all_keys(document), document), overrides);
+  if ((another_end || !command.end.empty()) && document.has("stages"))
+    throw InputError("cannot be another, as stages follow, which have their own ends",
+                     command.end.empty() ? "--set time.end" : "--end",
+                     "Leave it out; a signal (TERM) ends the run, and leaves a checkpoint.");
   if (!from.stage_ends) return document;
   std::optional<Document> next = document.next_stage();
   if (!next)
@@ -60,7 +71,7 @@ void go_back(Checkpoint& from, const Scene& scene, const std::string& directory)
 
 void check_end(const Checkpoint& from, const Scene& scene, const std::string& directory) {
   if (!at_end(from, scene) || !has_ended(directory)) return;
-  throw InputError(fmt::format("is complete: it has come to its end, {:.6g} s", scene.time.end),
+  throw InputError(fmt::format("is complete: it has come to its end, {:.6g} s", from.time),
                    directory, "Give a later end: --end TIME.");
 }
 

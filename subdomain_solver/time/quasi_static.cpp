@@ -257,7 +257,7 @@ double QuasiStatic::tell_held(const Vector& force, std::span<const double> gone,
   free_.pick(force, held);
   free_.pick(Eigen::Map<const Vector>(gone.data(), static_cast<Eigen::Index>(gone.size())), way);
   free_.pick(acting, loads);
-  stabilisation_->tell(held, way, loads.lpNorm<1>(), motion);
+  stabilisation_->tell(held, way, loads, motion);
   constexpr double least = 1.0e-6;  // where nothing is allowed
   return Stabilisation::told(motion).share / std::max(least, stabilisation_->at_most());
 }
@@ -267,7 +267,7 @@ void QuasiStatic::settle(Motion& motion) {
   Vector& acting = buffers_.pull;
   free_.pick(view(motion.q), buffers_.x);
   free_.pick(buffers_.external, acting);
-  stabilisation_->settle(buffers_.x, acting.lpNorm<1>(), motion);
+  stabilisation_->settle(buffers_.x, acting, motion);
 }
 
 std::optional<Failed> QuasiStatic::begin(Motion& motion, double time) {

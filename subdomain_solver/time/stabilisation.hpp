@@ -40,26 +40,28 @@ class Stabilisation {
   }
   /// Adds C m to a balance (n), at x.
   void add_force(const Vector& x, Vector& balance) const;
-  /// A step ends at x, where forces [N] of these magnitudes act on the body, summed over all
-  /// coordinates: puts down what was borne, and the work that it took.
-  void settle(const Vector& x, double loads, Motion& motion) const;
+  /// A step ends at x, where these forces [N] (n) act on the body: puts down what was borne, and
+  /// the work that it took.
+  void settle(const Vector& x, const Vector& loads, Motion& motion) const;
   /// The same of a step in which something else held the body: with these forces [N] (n), along
   /// which it went so far [m] (n).
-  void tell(const Vector& force, const Vector& gone, double loads, Motion& motion) const;
+  void tell(const Vector& force, const Vector& gone, const Vector& loads, Motion& motion) const;
 
   /// What a motion remembers.
   struct Told {
     double force = 0.0;       // [N] at the end of the last step, summed over all coordinates
     double share = 0.0;       // of all that presses on the body then
     double share_most = 0.0;  // at the end of any step
-    double work = 0.0;        // [J] since the run began
+    double along = 0.0;  // then, of what acts along the motion that it held, or of 1/1000 of all
+    double work = 0.0;   // [J] since the run began
   };
   static Told told(const Motion& motion);
   /// [N] (n) with which it held the body at the end of the last step.
   Vector held(const Motion& motion) const;
 
  private:
-  void tell(const Vector& m, double done, double loads, Motion& motion) const;
+  void tell(const Vector& m, double done, const Vector& loads, Motion& motion) const;
+  double share_along(const Vector& m, const Vector& loads, double all) const;
   Vector hold(const Vector& gone) const { return stiffness_ * gone + stiffer_ * gone; }
   Vector place_of(const Vector& x) const {
     return motions_.transpose() * x / static_cast<double>(x.size());

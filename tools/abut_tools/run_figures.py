@@ -241,7 +241,9 @@ def own_energy(run: Run, body: str) -> list:
 def energy_error_figure(run: Run) -> Figure:
     """What the measures energy.*.relative_* are the largest and last values of, in per cent: only
     where there is something to compare with, relative to the run's own scales."""
-    figure = Figure("energy_error", "Energy error", "error", "%")
+    figure = Figure("energy_error", "Change of the energies, with friction of passive windows"
+                    if run.summary.get("accuracy", {}).get("given_up", {}).get("passive_windows")
+                    else "Energy error", "error", "%")
     scales = run.summary.get("energy_scales", {})
     times = run.history["time"]
     errors = []

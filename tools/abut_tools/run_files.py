@@ -145,10 +145,11 @@ SUMMARY = {
     "versions": {"*": TEXT},
     "overlaps": [{"!bodies": [TEXT], "!depth": VALUE, "!time": VALUE, "place": [VALUE]}],
     "accuracy": {"given_up": {
-        **dict.fromkeys(("passive_windows", "halved_windows", "rigid_windows", "unanswered"),
+        **dict.fromkeys(("passive_windows", "halved_windows", "rigid_windows", "unanswered",
+                         "near_windows"),
                         NUMBER),
         **dict.fromkeys(("joules", "largest_energy", "normal", "friction", "damped",
-                         "changes_of_form", "push_out", "owed", "repaid", "deepest"), VALUE),
+                         "changes_of_form", "push_out", "owed", "missed", "repaid", "deepest"), VALUE),
         **dict.fromkeys(("lost_by_body", "taken_from_body", "refused_by_body"), {"*": VALUE}),
         "words": TEXT}},
 }

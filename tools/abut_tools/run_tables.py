@@ -118,6 +118,26 @@ def swaps_table(run: Run) -> str:
                      "stored before", "after", "given up"], rows[:MOST_ROWS]) + note
 
 
+def energy_error(run: Run) -> float | None:
+    """What no account has, relative to the run's own scale: passive windows tell what they took
+    beside the bodies' accounts."""
+    drift = run.measure("energy.total.relative_drift_end")
+    scale = run.summary.get("energy_scales", {}).get("total")
+    up = run.summary.get("accuracy", {}).get("given_up", {})
+    taken = [up.get("friction"), up.get("joules")]
+    if drift is None or not scale or not up.get("passive_windows") or None in taken:
+        return drift
+    there = sum(column[0] for column in energies_of(run, "total") + energies_of(run, "dissipated"))
+    done = sum(column[-1] - column[0] for column in energies_of(run, "external_work"))
+    return (drift * scale + sum(taken)) / max(scale, there + max(0.0, done))
+
+
+def energies_of(run: Run, kind: str) -> list:
+    """Columns of bodies, of those that are written."""
+    names = [f"{body}.{kind}" for body in run.bodies()]
+    return [run.history[name] for name in names if name in run.history and run.history[name]]
+
+
 def course(run: Run) -> str:
     """The run in one sentence."""
     summary, told = run.summary, []
@@ -132,10 +152,10 @@ def course(run: Run) -> str:
     wall = summary.get("timing", {}).get("wall_s")
     if wall is not None:
         told.append(f"computed in {measured(wall, 's')}")
-    drift = run.measure("energy.total.relative_drift_end")
-    if drift is not None:
-        told.append("change of the total energy " +
-                    (f"{100.0 * drift:.2g} %" if abs(drift) > ROUND_OFF else "round-off alone"))
+    error = energy_error(run)
+    if error is not None:
+        told.append("error of the total energy " +
+                    (f"{100.0 * error:.2g} %" if abs(error) > ROUND_OFF else "round-off alone"))
     return f"<p>{html.escape('; '.join(told))}.</p>" if told else ""
 
 
@@ -191,13 +211,14 @@ def overlaps_table(run: Run) -> str:
 def given_up_table(run: Run) -> str:
     """What windows that the accurate method could not take have cost."""
     up = run.summary.get("accuracy", {}).get("given_up", {})
-    if not up.get("passive_windows") and not up.get("repaid"):
+    if not any(up.get(key) for key in ("passive_windows", "near_windows", "repaid")):
         return ""
     windows = max(run.summary.get("windows", 0), 1)
     shares = [(windows - up["passive_windows"], "windows by the accurate method"),
               (up["passive_windows"], "windows passively"),
               (up.get("halved_windows", 0), "of these in shorter steps"),
-              (up.get("rigid_windows", 0), "of these with bodies rigid for an instant")]
+              (up.get("rigid_windows", 0), "of these with bodies rigid for an instant"),
+              (up.get("near_windows", 0), "windows that have nearly converged")]
     rows = [[what, str(count), f"{100.0 * count / windows:.3g} %"] for count, what in shares]
     largest = up.get("largest_energy")
     for key, words in (("joules", "given up"), ("normal", "in normal contact"),
