@@ -13,6 +13,8 @@ namespace abut {
 
 namespace {
 
+constexpr const char* not_moved = "no force moves its ports";
+
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// Why no force can be tried at any port; empty: it can.
@@ -22,7 +24,14 @@ std::string why_none(BodyTrial& trial) {
   if (std::isinf(body.mass)) return "nothing moves the body";
   for (int p = 0; p < static_cast<int>(body.ports.size()); ++p)
     if (trial.light_force(p) > 0.0) return "";
-  return "no force moves its ports";
+  return not_moved;
+}
+
+/// Whether a port has facets, or is a point in one dimension: marks alone are not pushed.
+bool touchable(const Description& body) {
+  return std::ranges::any_of(body.ports, [](const Port& port) {
+    return port.geometry.dim == 1 || !port.geometry.facets.empty();
+  });
 }
 
 /// The last momentum along an axis, and the largest of any axis.
@@ -124,11 +133,19 @@ bool tells_reactions(const Description& body) {
 /// Impulse and momentum, in so short a time that no support can answer. Schemes that remember
 /// forces tell momentum by their whole steps: of those it is a window of these.
 std::string impulse(BodyTrial& trial) {
-  if (const std::string why = why_none(trial); !why.empty()) return why;
   const Description& body = trial.about();
   if (body.quasi_static) return "the body has no inertia";
   if (!body.frequencies.empty() && body.frequencies.front() > 0.0)
     return "the body is held, and moves in modes alone";
+  if (const std::string why = why_none(trial); !why.empty()) {
+    if (why == not_moved && !tells_reactions(body) && touchable(body))
+      throw BrokenClause(
+          fmt::format("the body has a mass of {:.6g} kg and tells no reaction of a support, but no "
+                      "force moves its ports",
+                      body.mass),
+          "Let forces on ports move the body, or tell an infinite mass, where nothing moves it.");
+    return why;
+  }
   const double shortest = trial.step() / 64.0;
   trial.save();
   const Response free = trial.window(trial.length());

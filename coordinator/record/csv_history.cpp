@@ -1,5 +1,6 @@
 #include "coordinator/record/csv_history.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -53,6 +54,9 @@ CsvHistory::CsvHistory(const std::filesystem::path& directory, const ClosedForm*
 void CsvHistory::on_start(const RunStart& start) {
   start_ = start;
   recorded_ = recorded_bodies(start_.bodies);
+  statics_ = std::ranges::all_of(start_.bodies, [](const Description* body) {
+    return body->quasi_static || std::isinf(body->mass);
+  });
   std::vector<std::vector<int>> index(start.bodies.size());
   for (std::size_t b = 0; b < start.bodies.size(); ++b) {
     const std::vector<Port>& ports = start.bodies[b]->ports;
@@ -139,7 +143,9 @@ void CsvHistory::write_row(const WindowReport& report, std::size_t record) {
       PortColumn& column = ports_[next];
       const Waveform& trace = response.ports[column.port].trace;
       const double before = record > 0 ? records[record - 1].time : report.window.begin;
-      column.values = trace.empty() ? PortMeans{} : column.reader.since(trace, before, time);
+      column.values = trace.empty() ? PortMeans{}
+                      : statics_    ? column.reader.at(trace, time)
+                                    : column.reader.since(trace, before, time);
       const int dim = column.reader.port().geometry.dim;
       for (int axis = 0; axis < dim; ++axis) number(column.values.u[axis]);
       for (int axis = 0; axis < dim; ++axis) number(column.values.v[axis]);

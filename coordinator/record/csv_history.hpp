@@ -60,6 +60,7 @@ class CsvHistory : public Observer {
   RunStart start_;
   std::vector<RecordedBody> recorded_;
   std::vector<PortColumn> ports_;  // by body, then by port
+  bool statics_ = false;  // no body has inertia: forces are those in balance, and no impulses
   std::vector<InterfaceColumn> interfaces_;
   std::optional<TextFile> history_;
   std::optional<ClosedFormCsv> exact_;

@@ -33,12 +33,14 @@ std::string shown(const Measures& measures, const std::string& name) {
   return fmt::format("{:.5g}", found->second);
 }
 
-/// A time of 1e-18 s beside a run of 1e-3 s is zero.
+/// A time of 1e-18 s beside a run of 1e-3 s is zero; a stage that begins late is told apart.
 std::string time_shown(const Measures& measures, const std::string& name, const RunStart& start) {
   const auto found = measures.values.find(name);
-  const bool zero = found != measures.values.end() &&
-                    std::abs(found->second) < 1.0e-12 * (start.end - start.begin);
-  return zero ? "0" : shown(measures, name);
+  if (found == measures.values.end() || !std::isfinite(found->second)) return "-";
+  const double share = std::abs(found->second) / (start.end - start.begin);
+  if (!(share >= 1.0e-12)) return "0";
+  const int more = static_cast<int>(std::clamp(std::ceil(std::log10(share)), 0.0, 10.0));
+  return fmt::format("{:.{}g}", found->second, 5 + more);
 }
 
 /// The first rows, and how many there are beside them.

@@ -57,6 +57,39 @@ TEST_P(PassiveFriction, IsThatOfSlidingOnceItSlides) {
               0.03 * g * (grows + then));
 }
 
+/// A plate that slides hops along: where it comes down it slides, and has the coefficient of that.
+/// Of every impact friction takes 0.1 of the impulse, whatever the step.
+TEST(PassiveFrictionOfHops, IsThatOfSliding) {
+  for (const double step : {5.0e-4, 5.0e-5}) {
+    const auto run = run_text(fmt::format(
+        R"(time: {{end: 0.5, window: {0}}}
+bodies:
+  floor:
+    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [9, 0.1], elements: [1, 1]}}}}}}}}
+    initial: {{position: [-1, -0.1]}}
+    ports: {{top: {{side: top}}}}
+  plate:
+    model:
+      rigid:
+        dimension: 2
+        mesh: {{rectangle: {{lengths: [0.3, 0.02], elements: [1, 1], origin: centre}}}}
+    material: {{linear_elastic: {{youngs_modulus: 1.0e9, poissons_ratio: 0.3, density: 1000}}}}
+    integrator: {{rigid_motion: {{step: {0}}}}}
+    initial: {{position: [0, 0.06], velocity: [5, 0]}}
+    body_force: [0, -10]
+    ports: {{skin: {{side: boundary}}}}
+contact: {{everything: {{friction: 0.1, static_friction: 0.5, restitution: 0.8}}}}
+)",
+        number(step)));
+    ASSERT_TRUE(run->completed()) << run->end.reason;
+    const double mass = 1000.0 * 0.3 * 0.02, fall = 10.0 * 0.5;  // [kg], [m/s] by the end
+    const double pressed = run->measure("body.plate.velocity.y.mean") + fall;
+    EXPECT_GT(mass * pressed, 20.0);  // it has hopped
+    // What sweeps leave.
+    EXPECT_NEAR(5.0 - run->measure("body.plate.velocity.x.mean"), 0.1 * pressed, 1.0e-6) << step;
+  }
+}
+
 TEST_P(PassiveFriction, HasOneCoefficientWhereTheSceneGivesOne) {
   const auto run = pulled(GetParam(), 0.5, "{friction: 0.3}");
   ASSERT_TRUE(run->completed()) << run->end.reason;

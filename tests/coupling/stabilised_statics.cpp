@@ -202,7 +202,8 @@ TEST(PassiveStatics, SupportsWorkByTheForcesInWhichStepsEnd) {
   const auto work = [&](const std::string& schwarz, bool passive) {
     const auto run = run_solids(10, 1.0, {lower, upper},
                                 "  j0: {sides: [b0.top, b1.bottom], contact: {friction: 0.3}}\n"
-                                "schwarz: {" + schwarz + "}\n");
+                                "schwarz: {" +
+                                    schwarz + "}\n");
     EXPECT_TRUE(run->completed()) << run->end.reason;
     EXPECT_EQ(run->end.given_up.windows > 0, passive);
     return run->measure("body.b1.energy.external_work");
@@ -337,6 +338,46 @@ TEST(StabilisedStatics, WhatNothingHoldsEndsTheRun) {
   const auto asked =
       Column{.friction = 0.1, .push = 400.0, .stabilisation = "stiffness: 0.1, at_most: 1.0"}.run();
   EXPECT_TRUE(asked->completed()) << asked->end.reason;
+}
+
+/// A block of 200 N between walls that press it with 20 kN each, and rub or do not: what presses
+/// across says nothing of the way down.
+TEST(StabilisedStatics, AreNotHeldAlongByWhatPressesAcross) {
+  const auto clamped = [](const char* friction) {
+    const auto wall = [](const char* name, const char* way, double place, const char* side) {
+      return fmt::format(
+          R"(  {}:
+    model:
+      rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.1, 1], elements: [1, 1]}}}}, way: ["{}", "0"]}}
+    initial: {{position: [{}, -0.5]}}
+    ports: {{side: {{side: {}}}}}
+)",
+          name, way, place, side);
+    };
+    return run_text("time: {end: 1, window: 0.25}\nbodies:\n" +
+                    wall("left", "1.0e-3*t", -0.1, "right") +
+                    wall("right", "-1.0e-3*t", 0.1, "left") +
+                    fmt::format(R"(  block:
+    model: {{fe: {{dimension: 2, plane: stress, mesh: {{rectangle: {{lengths: [0.1, 0.2], elements: [5, 8]}}}}}}}}
+    material: {{linear_elastic: {{youngs_modulus: 1.0e7, poissons_ratio: 0.0, density: 1000}}}}
+    integrator: {{quasi_static: {{step: 0.25}}}}
+    body_force: [0, -10]
+    ports: {{left: {{side: left}}, right: {{side: right}}}}
+interfaces:
+  one: {{sides: [block.left, left.side], contact: {{friction: {0}}}}}
+  other: {{sides: [block.right, right.side], contact: {{friction: {0}}}}}
+)",
+                                friction));
+  };
+  const auto slips = clamped("0");
+  EXPECT_EQ(slips->end.status, "failed");
+  EXPECT_NE(slips->end.reason.find("'block' is held against moving along -y by nothing"),
+            std::string::npos)
+      << slips->end.reason;
+  EXPECT_LT(slips->measure("body.block.stabilisation.share"), 0.01);
+  const auto held = clamped("0.05");  // of 40 kN: ten times the weight
+  ASSERT_TRUE(held->completed()) << held->end.reason;
+  EXPECT_LT(held->measure("body.block.stabilisation.share_along"), 1.0e-6);  // sweeps
 }
 
 TEST(StabilisedStatics, KeysWithoutEffectAreRefused) {

@@ -356,6 +356,29 @@ class Stages(Resume):
         scene.write_text(text.replace("time: {end: 1.0007", "time: {end: 0.5"), encoding="utf-8")
         self.assertIn("stage impact", self.abut("check", scene).stderr)
 
+    def test_a_velocity_that_nothing_takes_is_refused(self):
+        text = self.SCENE.read_text(encoding="utf-8")
+        scene = self.folder / "moving.yaml"
+        scene.write_text(text.rstrip("\n") + "\n  on:\n    time: {end: 1.0009}\n    bodies: "
+                         "{striker: {initial: {velocity: [-20.0, 0.0]}}}\n", encoding="utf-8")
+        said = self.abut("check", scene)
+        self.assertEqual(said.returncode, 2, said.stdout)
+        self.assertRegex(said.stderr, r"moving\.yaml:\d+: .*striker\.initial\.velocity.*: "
+                                      "has no effect")
+
+    def test_another_end_is_refused_while_stages_follow(self):
+        run = self.begin(self.SCENE, "--set", "output.checkpoint={windows: 1}")
+        if self.come_to(run, 0.2):
+            self.kill(run)
+        else:
+            self.end(run)
+        for given in (("--end", "0.9"), ("--set", "time.end=0.9")):
+            ended = self.end(self.resume(*given))
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+        twice = self.end(self.resume("--end", "0.9", "--set", "time.end=0.8"))
+        self.assertEqual(twice.returncode, 2)
+        self.assertIn("--end and --set time.end: is given twice", twice.stderr)
+
     def test_a_stage_without_inertia_does_not_follow_motion(self):
         text = self.SCENE.read_text(encoding="utf-8")
         static, moving = "{quasi_static: {step: 0.1}}", "{central_difference: {step: 2.5e-6}}"

@@ -53,6 +53,22 @@ TEST(GivenUp, TellsSharesJoulesAndDepth) {
             "it meets others would lose less");
 }
 
+TEST(GivenUp, TellsWhatIsOwedAtTheEndAndNoRemedyForIt) {
+  GivenUp up = passive();
+  up.damped = up.friction = up.deepest = 0.0;
+  up.halved_windows = 0;
+  up.owed = 0.25;
+  EXPECT_EQ(Told().words(up),
+            "3 % of the windows were solved passively; 0.25 J of 120 J were given up in them "
+            "(0.25 J in normal contact), of which 0.25 J are given back as bodies part that touch "
+            "at the end");
+}
+
+TEST(GivenUp, TellsWindowsThatHaveNearlyConverged) {
+  EXPECT_EQ(Told().words({.near_windows = 4, .missed = 0.0123, .largest = 1.0}),
+            "2 % of the windows have nearly converged, with residuals up to 0.012");
+}
+
 TEST(GivenUp, LeavesOutWhatIsNothing) {
   GivenUp up = passive();
   up.damped = 1.0e-9;

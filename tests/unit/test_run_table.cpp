@@ -100,6 +100,13 @@ TEST_F(RunTableText, TellsTheErrorOfAllThatWasPutIn) {
   EXPECT_NE(damped.text(measures).find("  -45 %\n"), std::string::npos) << damped.text(measures);
 }
 
+/// Ended while it waited for its bodies, a run has none to tell of.
+TEST_F(RunTableText, TellsNoTimesOfARunThatNeverBegan) {
+  RunTable none;
+  none.on_end({.wall_seconds = 1.0, .compute_seconds = {0.25, 0.5}});
+  EXPECT_EQ(none.times(std::vector{0.5, 0.25}, {{0}, {1}}), "");
+}
+
 TEST_F(RunTableText, TellsTenContactsAndHowManyMoreThereAre) {
   start.interfaces.assign(12, InterfaceInfo{.name = "impact"});
   RunTable many;

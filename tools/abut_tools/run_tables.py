@@ -37,6 +37,12 @@ def moment_words(run: Run, value: float | None) -> str:
     times = [abs(t) for t in run.history["time"] if t is not None]
     if value is not None and abs(value) < 1e-9 * max(times, default=0.0):
         value = 0.0
+    span = run.summary.get("time", {})
+    length = (span.get("end") or 0.0) - (span.get("begin") or 0.0)
+    if value and 0.0 < length < abs(value):  # in a stage that begins late
+        factor, unit = scaled_unit(abs(value), run.units.word("s"))
+        digits = 4 + min(10, math.ceil(math.log10(abs(value) / length)))
+        return f"{value * factor:.{digits}g} {unit}"
     return run.told(value, "s")
 
 
@@ -143,6 +149,9 @@ def course(run: Run) -> str:
     summary, told = run.summary, []
     time = summary.get("time", {})
     begin, reached = time.get("begin"), time.get("reached")
+    first = next((t for t in run.history["time"] if t is not None), None)
+    if begin is not None and first is not None:  # of the first stage, where there are several
+        begin = min(begin, first)
     if begin is not None and reached is not None:
         told.append(f"From {moment_words(run, begin)} to {moment_words(run, reached)}")
     if "windows" in summary:

@@ -11,8 +11,9 @@ import re
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from abut_tools.scene_keys import nearest
 from abut_tools.study_file import Error, Study
-from abut_tools.tables import rounded, thinned, with_jumps
+from abut_tools.tables import ToolError, rounded, thinned, with_jumps
 
 CURVE_POINTS = 1000
 ENERGIES = ("kinetic", "stored", "total")
@@ -121,12 +122,16 @@ def curves_of(port: str, own: str, wanted: list[str], run: dict, exact: dict,
     return {name: each for name, each in found.items() if each}
 
 
+def columns_in(table: Path) -> list[str]:
+    with table.open(newline="", encoding="utf-8") as file:
+        return [re.sub(r" \[.*\]$", "", name) for name in next(csv.reader(file), [])]
+
+
 def port_in(table: Path, port: str) -> str:
     """The port's name in this run: a body that holds `left` as a member may call it X.left_tip."""
     if not table.is_file():
         return port
-    with table.open(newline="", encoding="utf-8") as file:
-        names = [re.sub(r" \[.*\]$", "", name) for name in next(csv.reader(file), [])]
+    names = columns_in(table)
     found = [name.removesuffix(".u") for name in names
              if name.endswith(f".{port.replace('.', '_')}.u")]
     return port if f"{port}.u" in names or not found else found[0]
@@ -157,6 +162,23 @@ def matches(label: str, patterns: str | list) -> bool:
                for pattern in ([patterns] if isinstance(patterns, str) else patterns))
 
 
+def refuse_unknown(study: Study, table: Path, run: dict, over_time: list, own: dict) -> None:
+    """A misspelt column is told by the first run that ends. Of several scenes one may have it."""
+    if len({point.scene for point in study.points}) > 1 or not table.is_file():
+        return
+    names = columns_in(table)
+    for error in over_time:
+        for name in error.history:
+            if name not in run:
+                raise ToolError(f"errors.{error.name}: history: there is no column '{name}'."
+                                f"{nearest(name, names)} history.csv of a run has them all.", 2)
+    ports = sorted(name.removesuffix(".u") for name in names if re.search(r"\.u(_[xyz])?$", name))
+    for port, found in own.items():
+        if not any(f"{found}.u{axis}" in names for axis in ("", "_x")):
+            raise ToolError(f"figures: of: there is no port '{port}'.{nearest(port, ports)} There "
+                            f"are: {', '.join(ports)}.", 2)
+
+
 def take(study: Study, label: str, folder: Path, reference: Path | None) -> dict:
     """Errors over time and curves of one finished run."""
     over_time = [error for error in study.errors if error.history]
@@ -171,6 +193,7 @@ def take(study: Study, label: str, folder: Path, reference: Path | None) -> dict
         return {"errors": {}, "curves": {}}
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     run = read_table(folder / "history.csv", wanted)
+    refuse_unknown(study, folder / "history.csv", run, over_time, own)
     exact = read_table(folder / "closed_form.csv", wanted)
     fine = read_table(reference / "history.csv", wanted) if reference else {}
     return {"errors": {error.name: history_error(error, run, exact, fine)

@@ -126,4 +126,6 @@ def told_fault(error: Exception, fault, body: str, configured: bool):
         fault.remedy = "This is a fault of the coordinator, not of the scene"
     if isinstance(error, InputError):
         fault.kind = pb.FAULT_KIND_INPUT
-        fault.what, fault.where, fault.remedy = error.what, error.where, error.remedy
+        in_scene = f"bodies.{body}." in error.where
+        fault.what, fault.remedy = error.what, error.remedy
+        fault.where = error.where if in_scene else f"body '{body}', {error.where}"

@@ -1,9 +1,15 @@
 """The keys of a body below model.external, as the scene has them."""
 
+import math
+import re
+
 import yaml
 
 from abut.errors import InputError
 from abut.units import in_si, system_of
+
+# A decimal number, as abut itself takes it.
+NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
 
 
 class Keys:
@@ -53,10 +59,7 @@ class Keys:
             raise InputError("is missing", self.where(name), "Give it a value.")
         self._unread.discard(name)
         value = self._values[name]
-        try:
-            return float(value) if isinstance(value, str) else value
-        except ValueError:
-            return value
+        return float(value) if isinstance(value, str) and NUMBER.fullmatch(value) else value
 
     def get(self, name: str, otherwise):
         return self[name] if name in self else otherwise
@@ -68,7 +71,7 @@ class Keys:
         number = None
         if not isinstance(value, bool) and isinstance(value, (int, float, str)):
             number = in_si(value, unit, self._system)
-        if number is None:
+        if number is None or not math.isfinite(number):
             raise InputError(f"must be a number, but is {value!r}", self.where(name),
                              f"Give one, as 0.5 or 0.5 {unit}." if unit else "Give one.")
         return number
