@@ -6,7 +6,7 @@ import re
 
 from abut_tools.page import table_of
 from abut_tools.run_folder import Run
-from abut_tools.tables import few, measured, shown
+from abut_tools.tables import few, measured, scaled_unit, shown
 from abut_tools.units import measure_unit
 
 MOST_ROWS = 24       # of bodies and of contacts that are told one by one
