@@ -94,6 +94,7 @@ class Controller {
   };
   struct Waiting {  // [windows] in which bodies stay passive before the accurate method is tried
     int wait = 2, left = 0, accurate = 0;
+    int near = 0;  // accurate ones that have nearly converged, one after the other, until now
   };
 
   void introduce();

@@ -57,13 +57,17 @@ int Controller::most_halvings() const {
   return may_go_passively() && passive_.statics() && !attempt_.failed ? of_statics : 0;
 }
 
-/// Not in statics: what is left of a residual is work there, and shorter windows were tried.
+/// Not in statics: what is left of a residual is work there, and shorter windows were tried. Nor
+/// for long: what swings from window to window may make energy where little moves.
 bool Controller::nearly_converged() const {
-  return may_go_passively() && !passive_.statics() && attempt_.nearly();
+  constexpr int most_in_a_row = 5;
+  return may_go_passively() && !passive_.statics() && attempt_.nearly() &&
+         waiting_.near < most_in_a_row;
 }
 
 void Controller::note_near(const TimeWindow& window) {
-  if (attempt_.converged()) return;
+  waiting_.near = attempt_.converged() ? 0 : waiting_.near + 1;
+  if (waiting_.near == 0) return;
   if (passive_.ledger().near_windows == 0)
     narrator_.warning(window.begin, "",
                       attempt_.trouble(scene_.schwarz.tolerance) +

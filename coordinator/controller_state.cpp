@@ -91,6 +91,7 @@ void Controller::memory(Archive& archive) {
   whole(archive, "wait", waiting_.wait);
   whole(archive, "left", waiting_.left);
   whole(archive, "accurate", waiting_.accurate);
+  whole(archive, "near", waiting_.near);
   schwarz_.state(archive);
   if (event_) event_->state(archive);
 }

@@ -99,6 +99,16 @@ Vector SkinSides::edge_normal(Points points, std::int32_t one, std::int32_t othe
   return normal_at(points, {2, {one, other, -1}});
 }
 
+double SkinSides::fold(Points points, std::int32_t one, std::int32_t other) const {
+  const Place edge{2, {one, other, -1}};
+  const Vector normal = normal_at(points, edge);
+  double least = 1.0;
+  visit_facets(edge, [&](std::int32_t facet) {
+    least = std::min(least, facet_normal(points, facet).dot(normal));
+  });
+  return least;
+}
+
 SignedSide SkinSides::side(Points points, const Vector& x,
                            std::span<const std::int32_t> facets) const {
   SignedSide found;

@@ -37,6 +37,9 @@ class SkinSides {
   /// Unit normal of an edge, of its facets; zero where there is none.
   Eigen::Vector3d edge_normal(std::span<const Eigen::Vector3d> points, std::int32_t one,
                               std::int32_t other) const;
+  /// Smallest cosine of the angles between the normals of an edge's facets and its own: 1 where it
+  /// lies in a flat face.
+  double fold(std::span<const Eigen::Vector3d> points, std::int32_t one, std::int32_t other) const;
   /// The side of the closest of the given facets. Where the surface ends, inside is what is behind
   /// the normal rather than beside it.
   SignedSide side(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& x,

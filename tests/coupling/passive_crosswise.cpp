@@ -100,5 +100,42 @@ TEST_P(HeavyOnLight, Rests) {
 
 INSTANTIATE_TEST_SUITE_P(Ratios, HeavyOnLight, testing::Values(1.0, 100.0, 1000.0));
 
+/// A block on two pads whose sides are flush with its own: edges of the pads pass the line between
+/// two facets of its side, over which nothing leaves it. By that line they were told as 94 mm deep,
+/// were pushed, and 2 % of the energy went with it.
+TEST(PassiveFlush, SidesAreNoWayOut) {
+  const auto run = run_text(R"(time: {end: 0.05, window: 0.001}
+bodies:
+  floor:
+    model: {rigid_tool: {dimension: 3, mesh: {box: {lengths: [2, 2, 0.1], elements: [1, 1, 1]}}}}
+    initial: {position: [-1, -1, -0.1]}
+    ports: {top: {side: front}}
+  pad:
+    copies: {grid: {count: [2, 1, 1], spacing: [0.8, 0, 0]}}
+    model: {fe: {dimension: 3, mesh: {box: {lengths: [0.1, 0.1, 0.05], elements: [2, 2, 2]}}}}
+    material: {linear_elastic: {youngs_modulus: 1.0e8, poissons_ratio: 0.0, density: 10}}
+    integrator: {newmark: {step: 0.001}}
+    initial: {position: [-0.45, -0.05, 0]}
+    ports: {skin: {side: boundary}}
+  block:
+    model:
+      rigid:
+        dimension: 3
+        mesh: {box: {lengths: [1, 0.1, 0.5], elements: [1, 1, 1], origin: centre}}
+    material: {linear_elastic: {youngs_modulus: 1.0e11, poissons_ratio: 0.0, density: 8000}}
+    integrator: {rigid_motion: {step: 0.001}}
+    initial: {position: [0, 0, 0.3]}
+    body_force: [0, 0, -10]
+    ports: {skin: {side: boundary}}
+contact: {everything: {friction: 0}}
+)");
+  ASSERT_TRUE(run->completed()) << run->end.reason;
+  const GivenUp& up = run->end.given_up;
+  EXPECT_GT(up.windows, 0);
+  const double sinks = 2.0 * 4000.0 * 0.05 / (2.0 * 1.0e8 * 0.01);  // [m] 2 m g / k
+  EXPECT_LT(up.deepest, 0.1 * sinks);
+  EXPECT_LT(up.joules(), 1.0e-3 * 4000.0 * sinks);  // of its weight's work
+}
+
 }  // namespace
 }  // namespace abut::passive_crosswise_tests

@@ -65,7 +65,8 @@ TEST(PassiveFrictionOfHops, IsThatOfSliding) {
         R"(time: {{end: 0.5, window: {0}}}
 bodies:
   floor:
-    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [9, 0.1], elements: [1, 1]}}}}}}}}
+    model:
+      rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [9, 0.1], elements: [1, 1]}}}}}}
     initial: {{position: [-1, -0.1]}}
     ports: {{top: {{side: top}}}}
   plate:

@@ -18,7 +18,8 @@ ResultPtr block_falls(double end) {
       R"(time: {{end: {}, window: 1.0e-3}}
 bodies:
   floor:
-    model: {{rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [1, 0.1], elements: [1, 1]}}}}}}}}
+    model:
+      rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [1, 0.1], elements: [1, 1]}}}}}}
     initial: {{position: [-0.5, -0.1]}}
     ports: {{top: {{side: top}}}}
   block:
@@ -44,7 +45,8 @@ TEST(PassiveOwed, IsWhatIsGivenBackAsBodiesPart) {
   // All but 2e-4 of it, which stays for the rounding of work (docs/METHOD.md, [M.145]); blows that
   // come after it leave as much.
   EXPECT_NEAR(now.joules() - now.owed, 0.0, 3.0e-4 * now.joules());
-  EXPECT_LT(then.joules(), 1.0e-4 * energy);
+  // Of three blows, 2e-4 of each.
+  EXPECT_LT(then.joules(), 3 * 2.0e-4 * 0.15 * energy);
 }
 
 }  // namespace

@@ -348,7 +348,10 @@ TEST(StabilisedStatics, AreNotHeldAlongByWhatPressesAcross) {
       return fmt::format(
           R"(  {}:
     model:
-      rigid_tool: {{dimension: 2, mesh: {{rectangle: {{lengths: [0.1, 1], elements: [1, 1]}}}}, way: ["{}", "0"]}}
+      rigid_tool:
+        dimension: 2
+        mesh: {{rectangle: {{lengths: [0.1, 1], elements: [1, 1]}}}}
+        way: ["{}", "0"]
     initial: {{position: [{}, -0.5]}}
     ports: {{side: {{side: {}}}}}
 )",
@@ -358,7 +361,11 @@ TEST(StabilisedStatics, AreNotHeldAlongByWhatPressesAcross) {
                     wall("left", "1.0e-3*t", -0.1, "right") +
                     wall("right", "-1.0e-3*t", 0.1, "left") +
                     fmt::format(R"(  block:
-    model: {{fe: {{dimension: 2, plane: stress, mesh: {{rectangle: {{lengths: [0.1, 0.2], elements: [5, 8]}}}}}}}}
+    model:
+      fe:
+        dimension: 2
+        plane: stress
+        mesh: {{rectangle: {{lengths: [0.1, 0.2], elements: [5, 8]}}}}
     material: {{linear_elastic: {{youngs_modulus: 1.0e7, poissons_ratio: 0.0, density: 1000}}}}
     integrator: {{quasi_static: {{step: 0.25}}}}
     body_force: [0, -10]
@@ -377,7 +384,8 @@ interfaces:
   EXPECT_LT(slips->measure("body.block.stabilisation.share"), 0.01);
   const auto held = clamped("0.05");  // of 40 kN: ten times the weight
   ASSERT_TRUE(held->completed()) << held->end.reason;
-  EXPECT_LT(held->measure("body.block.stabilisation.share_along"), 1.0e-6);  // sweeps
+  // What sweeps leave.
+  EXPECT_LT(held->measure("body.block.stabilisation.share_along"), 1.0e-6);
 }
 
 TEST(StabilisedStatics, KeysWithoutEffectAreRefused) {

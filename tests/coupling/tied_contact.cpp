@@ -396,7 +396,11 @@ TEST(TiedContact, PressedAtItsRimHasNearlyConverged) {
     const double c = std::cos(0.1), s = std::sin(0.1);
     return fmt::format(
         R"(  {}:
-    model: {{fe: {{dimension: 2, map: ["{}*(x+{}) - {}*y", "{}*(x+{}) + {}*y"], mesh: {{rectangle: {{lengths: [0.4, 0.3], elements: {}}}}}}}}}
+    model:
+      fe:
+        dimension: 2
+        map: ["{}*(x+{}) - {}*y", "{}*(x+{}) + {}*y"]
+        mesh: {{rectangle: {{lengths: [0.4, 0.3], elements: {}}}}}
     material: {{neo_hookean: {{youngs_modulus: 2.0e6, poissons_ratio: 0.3, density: 700.0}}}}
     integrator: {{central_difference: {{step: {}}}}}
     initial: {{position: [0.0, 0.20986673331746253], velocity: [0, -8]}}
@@ -408,7 +412,8 @@ TEST(TiedContact, PressedAtItsRimHasNearlyConverged) {
       R"(time: {begin: 0.0, end: 0.06, window: 0.0002}
 bodies:
   floor:
-    model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [4, 0.2], elements: [40, 2], origin: centre}}}}
+    model:
+      fe: {dimension: 2, mesh: {rectangle: {lengths: [4, 0.2], elements: [40, 2], origin: centre}}}
     material: {linear_elastic: {youngs_modulus: 2.0e7, poissons_ratio: 0.3, density: 900}}
     integrator: {central_difference: {step: 0.0002}}
     constraints: {held: {on: bottom, fixed: true}}
