@@ -10,10 +10,11 @@ namespace abut {
 
 namespace {
 
-/// Of residuals, when as many sweeps as usual have been made. Where contact presses both sides of a
-/// joint, these do not follow its forces, and what they miss each other by stays, whatever the
-/// sweeps: it is of one window, and closes as one side parts. Stiff blocks that rest on each other
-/// without joints make energy of less.
+/// Residuals up to this are near, when as many sweeps as usual have been made.
+constexpr double near = 1.0e-5;
+/// Where contact presses both sides of a joint, these do not follow its forces, and what they miss
+/// each other by stays, whatever the sweeps: it is of one window, and closes as one side parts.
+/// Stiff blocks that rest on each other without joints make energy of less.
 constexpr double near_beside_ties = 5.0e-2;
 
 }  // namespace
@@ -23,7 +24,7 @@ bool Attempt::converged() const { return std::ranges::all_of(reports, &SchwarzRe
 bool Attempt::nearly() const {
   return !failed && std::ranges::all_of(reports, [](const SchwarzReport& r) {
     return r.converged || (r.contradiction.empty() && r.iterations >= Steps::usual_most &&
-                           r.beside_ties && r.residual.largest() <= near_beside_ties);
+                           r.residual.largest() <= (r.beside_ties ? near_beside_ties : near));
   });
 }
 

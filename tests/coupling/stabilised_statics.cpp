@@ -381,6 +381,7 @@ interfaces:
   EXPECT_NE(slips->end.reason.find("'block' is held against moving along -y by nothing"),
             std::string::npos)
       << slips->end.reason;
+  // Of all forces it is little, which alone is allowed at the end.
   EXPECT_LT(slips->measure("body.block.stabilisation.share"), 0.01);
   const auto held = clamped("0.05");  // of 40 kN: ten times the weight
   ASSERT_TRUE(held->completed()) << held->end.reason;

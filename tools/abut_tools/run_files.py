@@ -149,7 +149,8 @@ SUMMARY = {
                          "near_windows"),
                         NUMBER),
         **dict.fromkeys(("joules", "largest_energy", "normal", "friction", "damped",
-                         "changes_of_form", "push_out", "owed", "missed", "repaid", "deepest"), VALUE),
+                         "changes_of_form", "push_out", "owed", "missed", "repaid",
+                         "deepest"), VALUE),
         **dict.fromkeys(("lost_by_body", "taken_from_body", "refused_by_body"), {"*": VALUE}),
         "words": TEXT}},
 }
