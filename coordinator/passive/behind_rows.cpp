@@ -54,9 +54,6 @@ Eigen::Vector3d facet_normal(int dim, const FeaturePoints& x) {
   return dim == 2 ? Eigen::Vector3d(u.y(), -u.x(), 0.0) : u.cross(x[3] - x[1]);
 }
 
-/// Cosine: edges whose facets' normals are nearer to their own lie in flat faces.
-constexpr double flat = 0.9995;
-
 }  // namespace
 
 BehindRows::BehindRows(const TouchingSurfaces& surfaces, double thickness, FeatureChoice choice)
@@ -364,7 +361,7 @@ void BehindRows::see_edge(const Behind& what, const std::array<std::int32_t, 2>&
   const std::optional<DistanceRow> row = edge_row(sides_, what.points, edge, places);
   if (!row || row->gap > thickness_) return;
   // Nothing leaves a body over the line between two facets of a flat face.
-  if (row->gap < -thickness_ && sides_.fold(places, edge[0], edge[1]) > flat) return;
+  if (row->gap < -thickness_ && sides_.fold(places, edge[0], edge[1]) > half_a_rim) return;
   WayOut way;
   way.row = *row;
   way.distance = std::abs(row->gap);

@@ -6,13 +6,6 @@
 
 namespace abut {
 
-namespace {
-
-/// Facets of a rim look apart by more than 4 degrees, each by half of that from their mean: cosine.
-constexpr double half_a_rim = 0.9995;
-
-}  // namespace
-
 std::optional<DistanceRow> edge_row(const SkinSides& sides, const EdgePoints& first,
                                     const EdgePoints& second,
                                     const std::vector<Eigen::Vector3d>& places) {

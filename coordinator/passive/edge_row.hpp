@@ -10,6 +10,9 @@
 
 namespace abut {
 
+/// Facets of a rim look apart by more than 4 degrees, each by half of that from their mean: cosine.
+inline constexpr double half_a_rim = 0.9995;
+
 /// Of the shortest edge: roundings of places; less is on a surface.
 inline constexpr double on_surface = 1.0e-6;
 /// Of the thickness: what came out so far is out.
