@@ -63,7 +63,7 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   close(report[1]);
   int error = pid_ < 0 ? fork_error : 0;
   // The pipe closes by itself at exec; bytes in it are the reason why there was none.
-  if (pid_ > 0 && read(report[0], &error, sizeof error) <= 0) error = 0;
+  if (pid_ > 0 && ::read(report[0], &error, sizeof error) <= 0) error = 0;
   close(report[0]);
   if (error == 0) {
     descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));

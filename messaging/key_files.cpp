@@ -71,7 +71,7 @@ std::string read_closed(const std::string& directory, const std::string& path, b
     throw InputError("is no file", path, "Give a directory that abut keygen has made.");
   require_closed(about, path, secret);
   std::string text(longest_file, '\0');
-  const ssize_t size = read(file.value, text.data(), text.size());
+  const ssize_t size = ::read(file.value, text.data(), text.size());
   text.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
   return text;
 }

@@ -21,7 +21,7 @@ namespace {
 /// Facet sizes that a node may lie behind a surface and still be seen.
 constexpr double reach = 2.0;
 /// Of the size of facets: what is no farther beside one lies over it.
-constexpr double beside = 0.02;
+constexpr double lies_over = 0.02;
 /// Of the size of facets: bodies are not thinner.
 constexpr double thinnest = 1.0e-3;
 
@@ -44,7 +44,7 @@ double nearest_edge(const StartSurface& one, const StartSurface& other) {
     if (!foot) continue;
     const Eigen::Vector3d way = x - foot->at.point;
     const Eigen::Vector3d normal = mean_normal(corners(other.surface, foot->facet));
-    if ((way - way.dot(normal) * normal).norm() <= beside * other.spacing)
+    if ((way - way.dot(normal) * normal).norm() <= lies_over * other.spacing)
       least = std::min(least, foot->at.distance);
   }
   return least;
@@ -115,7 +115,7 @@ SurfaceRows average_rows(const StartSurface& one, const StartSurface& other) {
 bool has_edges(const PosedSurface& surface) { return !sharp_nodes(surface, sharp_edge).empty(); }
 
 bool rows_of_other(const StartSurface& finder, const StartSurface& other) {
-  return nearest_edge(other, finder) + beside * finder.spacing < nearest_edge(finder, other);
+  return nearest_edge(other, finder) + lies_over * finder.spacing < nearest_edge(finder, other);
 }
 
 }  // namespace abut

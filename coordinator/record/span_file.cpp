@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view list_ending = "\n]\n";
 constexpr std::size_t most_pending = 1u << 24;  // bytes of one window
-constexpr std::size_t piece = 1u << 16;         // bytes that are written at once
+constexpr std::size_t span_piece = 1u << 16;    // bytes that are written at once
 constexpr std::chrono::milliseconds between_writes{500};
 constexpr int coordinator_track = 1;
 
@@ -137,7 +137,7 @@ void SpanFile::end_outer(const Span& span) {
     pending_.clear();
   else
     keep_pending();
-  if (kept_.size() > piece || span.ended >= next_) write();
+  if (kept_.size() > span_piece || span.ended >= next_) write();
 }
 
 /// What one window takes is bounded as well.

@@ -17,7 +17,7 @@ constexpr double least_share = 1.0e-9;
 
 /// Of a node's force, what it must have along the normal of a facet, over the most that it has on
 /// one of the node's: facets around an edge that look elsewhere are not pressed.
-constexpr double along = 0.6;
+constexpr double along_normal = 0.6;
 
 struct Touch {
   std::vector<double> pose, normals, weights;      // now; [m], [m^2] of the facets that are pressed
@@ -50,7 +50,7 @@ void weigh(const TouchedSurface& s, const PosedSurface& now, std::span<const dou
     const std::span<const std::int32_t> nodes = now.nodes(f);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const std::size_t node = index(nodes[i]);
-      if (most[node] > 0.0 && inward(nodes[i], normal) < along * most[node]) parts[i] = 0.0;
+      if (most[node] > 0.0 && inward(nodes[i], normal) < along_normal * most[node]) parts[i] = 0.0;
       if (parts[i] == 0.0) continue;
       t.weights[node] += parts[i];
       for (int k = 0; k < dim; ++k) t.normals[node * index(dim) + index(k)] += whole(k);

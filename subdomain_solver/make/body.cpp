@@ -59,7 +59,7 @@ ContactLayer layer_of(const BodySpec& spec, const PortSpec& port) {
   return layers[spec.contact_layer.index()];
 }
 
-struct SchemeMaker {
+struct BarSchemeMaker {
   const Bar& bar;
   const Place& place;
 
@@ -177,12 +177,9 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
                                 const BodyContext& context) {
   const BodySpec spec = placed_body(document, path, context);
   const Place place{document, path};
-  if (std::holds_alternative<BarPairSpec>(spec.model))
-    return make_pair(spec, place);
-  if (std::holds_alternative<ModalModelSpec>(spec.model))
-    return make_modal(spec, place);
-  if (std::holds_alternative<RigidModelSpec>(spec.model))
-    return make_rigid(spec, place);
+  if (std::holds_alternative<BarPairSpec>(spec.model)) return make_pair(spec, place);
+  if (std::holds_alternative<ModalModelSpec>(spec.model)) return make_modal(spec, place);
+  if (std::holds_alternative<RigidModelSpec>(spec.model)) return make_rigid(spec, place);
   if (std::holds_alternative<RigidToolSpec>(spec.model)) return make_tool(spec, place);
   if (spec.is_solid()) return make_solid(spec, place);
   check_points(spec, place);
@@ -198,7 +195,7 @@ std::unique_ptr<Interior> build(const Document& document, const std::string& pat
                place.where("model.fe.mesh.bar.elements"));
   check_layers(spec, properties, place);
   std::unique_ptr<Bar> bar = std::make_unique<Bar>(properties);
-  BarInterior::Scheme scheme = std::visit(SchemeMaker{*bar, place}, *spec.integrator);
+  BarInterior::Scheme scheme = std::visit(BarSchemeMaker{*bar, place}, *spec.integrator);
   BarInterior::Extras extras = make_extras(spec, place, *bar);
   return std::make_unique<BarInterior>(place.name(), std::move(bar), std::move(scheme), ports,
                                        std::move(extras));

@@ -13,7 +13,7 @@ namespace abut {
 namespace {
 
 /// The first numbers of a list as a vector of space.
-Eigen::Vector3d first(std::span<const double> list, int dim) {
+Eigen::Vector3d leading(std::span<const double> list, int dim) {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   for (int i = 0; i < dim; ++i) out(i) = list[i];
   return out;
@@ -86,7 +86,7 @@ bool RigidModel::evaluate(std::span<const double>, std::span<const double>, Want
 
 Pose RigidModel::pose(std::span<const double> q) const {
   Pose out;
-  out.displacement = first(q, dim_);
+  out.displacement = leading(q, dim_);
   if (dim_ == 2)
     out.attitude = Eigen::Quaterniond(std::cos(0.5 * q[2]), 0.0, 0.0, std::sin(0.5 * q[2]));
   if (dim_ == 3) out.attitude = Eigen::Quaterniond(q[3], q[4], q[5], q[6]);
@@ -112,7 +112,7 @@ Eigen::Vector3d RigidModel::angular_velocity(const Eigen::Quaterniond& attitude,
 
 Twist RigidModel::twist(std::span<const double> q, std::span<const double> v) const {
   Twist out;
-  out.velocity = first(v, dim_);
+  out.velocity = leading(v, dim_);
   if (dim_ == 2) out.angular(2) = v[2];
   if (dim_ == 3) out.angular = angular_velocity(pose(q).attitude, last(v));
   return out;
@@ -122,7 +122,7 @@ Twist RigidModel::twist(std::span<const double> q, std::span<const double> v) co
 Twist RigidModel::acceleration(std::span<const double> q, std::span<const double> v,
                                std::span<const double> a) const {
   Twist out;
-  out.velocity = first(a, dim_);
+  out.velocity = leading(a, dim_);
   if (dim_ == 2) out.angular(2) = a[2];
   if (dim_ == 3) {
     const Eigen::Vector3d momentum = last(v);
@@ -149,7 +149,7 @@ double RigidModel::power(std::span<const double> q, std::span<const double> v,
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   if (dim_ == 2) moment(2) = force(2);
   if (dim_ == 3) moment = last(parts);
-  return first(parts, dim_).dot(now.velocity) + moment.dot(now.angular);
+  return leading(parts, dim_).dot(now.velocity) + moment.dot(now.angular);
 }
 
 std::vector<double> RigidModel::coordinates(const Pose& pose) const {

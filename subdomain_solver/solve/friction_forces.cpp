@@ -27,7 +27,7 @@ constexpr double on_cone = 1.0e-9;
 /// whoever asks has other ways.
 constexpr double most_cubes = 2.0e10;
 
-using Tangent = OneRow<>::Tangent;
+using TangentPart = OneRow<>::Tangent;
 using PlaneSquare = OneRow<>::PlaneSquare;
 
 double radius(const FrictionRow& row, double normal) {
@@ -125,7 +125,7 @@ class Linearised {
     }
   }
   /// tau - rho w_t
-  Tangent led(const FrictionRow& row, const Vector& z) const {
+  TangentPart led(const FrictionRow& row, const Vector& z) const {
     const Eigen::Index tangents = row.parts - 1;
     return z.segment(row.first + 1, tangents) - rho(row) * b_.slip.segment(row.first + 1, tangents);
   }
@@ -151,9 +151,9 @@ class Linearised {
     // tau = mu lambda e(l), l = tau - rho w_t, e = l/|l|:  what turns e across itself counts,
     // forces along it are lambda's.
     const Eigen::Index tangents = row.parts - 1;
-    const Tangent lead = led(row, z);
+    const TangentPart lead = led(row, z);
     const double size = lead.norm();
-    const Tangent way = lead / size;
+    const TangentPart way = lead / size;
     const PlaneSquare across = (PlaneSquare::Identity(tangents, tangents) - way * way.transpose()) *
                                std::min(1.0, radius(row, z(row.first)) / size);
     for (Eigen::Index p = 0; p < tangents; ++p) {
@@ -161,7 +161,7 @@ class Linearised {
       b_.rest(at + 1 + p) = 0.0;
     }
     for (std::size_t k = 0; k < b_.active.size(); ++k) {
-      const Tangent slips = a_.col(b_.active[k]).segment(row.first + 1, tangents) * rho(row);
+      const TangentPart slips = a_.col(b_.active[k]).segment(row.first + 1, tangents) * rho(row);
       b_.matrix.col(static_cast<Eigen::Index>(k)).segment(at + 1, tangents) += across * slips;
     }
     b_.matrix.block(at + 1, at + 1, tangents, tangents) +=

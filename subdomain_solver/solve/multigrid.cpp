@@ -11,7 +11,7 @@ namespace abut {
 namespace {
 
 /// Unknowns that a direct solver takes in the time of a sweep through some 1e5.
-constexpr Eigen::Index few = 1500;
+constexpr Eigen::Index few_unknowns = 1500;
 /// The published bound of strong couplings of the finest level; half as much on each coarser one.
 constexpr double weak_couplings = 0.08;
 /// Levels until a matrix that does not get smaller is given up.
@@ -110,7 +110,7 @@ bool Multigrid::factor(const SparseMatrix& matrix) {
   levels_.clear();
   levels_.emplace_back().matrix = matrix;
   CoarseMotions motions = motions_;
-  while (levels_.back().matrix.rows() > few && levels_.size() < most_levels) {
+  while (levels_.back().matrix.rows() > few_unknowns && levels_.size() < most_levels) {
     if (!(levels_.back().matrix.diagonal().minCoeff() > 0.0)) return false;
     if (!add_level(motions)) break;
   }

@@ -325,7 +325,7 @@ TEST(LaunchedProcess, DiesWithTheCoordinatorThatWasKilled) {
     pause();
   }
   pid_t solver = 0;
-  ASSERT_EQ(read(report[0], &solver, sizeof solver), static_cast<ssize_t>(sizeof solver));
+  ASSERT_EQ(::read(report[0], &solver, sizeof solver), static_cast<ssize_t>(sizeof solver));
   kill(coordinator, SIGKILL);
   bool gone = false;
   for (int i = 0; i < 200 && !gone; ++i) {
