@@ -17,14 +17,14 @@ namespace abut {
 
 namespace {
 
-using Facet = std::vector<std::int32_t>;
+using HullFacet = std::vector<std::int32_t>;
 
 /// Facets of VTK's cells, corners first, then what lies on the edges in their order; those of
 /// linear cells have the corners alone.
-const std::vector<Facet>& facets_of(std::int32_t type) {
-  static const std::vector<Facet> none;
-  static const std::map<std::int32_t, std::vector<Facet>> all = [] {
-    std::map<std::int32_t, std::vector<Facet>> of;
+const std::vector<HullFacet>& facets_of(std::int32_t type) {
+  static const std::vector<HullFacet> none;
+  static const std::map<std::int32_t, std::vector<HullFacet>> all = [] {
+    std::map<std::int32_t, std::vector<HullFacet>> of;
     of[22] = {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}};
     of[23] = {{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}};
     of[24] = {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 2, 1, 6, 5, 4}};
@@ -32,7 +32,7 @@ const std::vector<Facet>& facets_of(std::int32_t type) {
               {2, 3, 7, 6, 10, 19, 14, 18}, {3, 0, 4, 7, 11, 16, 15, 19},
               {0, 3, 2, 1, 11, 10, 9, 8},   {4, 5, 6, 7, 12, 13, 14, 15}};
     for (const auto& [linear, second] : {std::pair{5, 22}, {9, 23}, {10, 24}, {12, 25}}) {
-      for (const Facet& facet : of[second]) {
+      for (const HullFacet& facet : of[second]) {
         const std::ptrdiff_t corners = facet.size() == 3 ? 2 : std::ssize(facet) / 2;
         of[linear].emplace_back(facet.begin(), facet.begin() + corners);
       }
@@ -49,29 +49,29 @@ int corners_of(int dim, std::size_t nodes) {
 }
 
 /// Facets that belong to one cell alone, in the order of cells.
-std::vector<Facet> outside_facets(const Grid& grid, int dim) {
-  std::map<Facet, int> seen;  // by corners, sorted
-  std::vector<std::pair<Facet, Facet>> all;
+std::vector<HullFacet> outside_facets(const Grid& grid, int dim) {
+  std::map<HullFacet, int> seen;  // by corners, sorted
+  std::vector<std::pair<HullFacet, HullFacet>> all;
   for (std::size_t c = 0; c < grid.cells(); ++c) {
     const std::int32_t* nodes = grid.connectivity.data() + grid.offsets[c];
-    for (const Facet& local : facets_of(grid.types[c])) {
+    for (const HullFacet& local : facets_of(grid.types[c])) {
       if (static_cast<int>(local.size()) < dim) continue;  // edges of a surface in space
-      Facet facet;
+      HullFacet facet;
       for (const std::int32_t node : local) facet.push_back(nodes[node]);
-      Facet key(facet.begin(), facet.begin() + corners_of(dim, facet.size()));
+      HullFacet key(facet.begin(), facet.begin() + corners_of(dim, facet.size()));
       std::ranges::sort(key);
       ++seen[key];
       all.emplace_back(std::move(key), std::move(facet));
     }
   }
-  std::vector<Facet> out;
+  std::vector<HullFacet> out;
   for (auto& [key, facet] : all)
     if (seen[key] == 1) out.push_back(std::move(facet));
   return out;
 }
 
 /// Of a quadrilateral in space; of others none.
-Corners corners_of(const Facet& facet, const Grid& grid) {
+Corners corners_of(const HullFacet& facet, const Grid& grid) {
   Corners corners;
   if (facet.size() != 4) return corners;
   for (const std::int32_t node : facet)
@@ -81,7 +81,7 @@ Corners corners_of(const Facet& facet, const Grid& grid) {
 }
 
 /// Straight facets between all nodes of these, and the points that they need.
-void add_facets(BodyHull& hull, const std::vector<Facet>& facets, const Grid& grid) {
+void add_facets(BodyHull& hull, const std::vector<HullFacet>& facets, const Grid& grid) {
   std::map<std::int32_t, std::int32_t> place;
   const auto number = [&](std::int32_t node) {
     const auto [at, fresh] = place.emplace(node, static_cast<std::int32_t>(hull.nodes.size()));
@@ -92,9 +92,9 @@ void add_facets(BodyHull& hull, const std::vector<Facet>& facets, const Grid& gr
     }
     return at->second;
   };
-  for (const Facet& facet : facets) {
+  for (const HullFacet& facet : facets) {
     const bool whole = facet.size() == 2 || (hull.dim == 3 && facet.size() <= 4);
-    Facet every(facet.size());
+    HullFacet every(facet.size());
     for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::int32_t>(i);
     const auto push = [&](const auto& part) {
       for (const auto i : part) hull.facets.push_back(number(facet[i]));

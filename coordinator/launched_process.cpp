@@ -8,7 +8,7 @@ namespace abut {
 
 namespace {
 
-constexpr std::size_t most_names = 20;                      // of bodies that share a process
+constexpr std::size_t most_listed = 20;                      // of bodies that share a process
 constexpr int code_of_ssh = 255, code_of_no_program = 127;  // of ssh itself, and of a shell there
 
 /// What to do about a solver of another machine that has ended at once.
@@ -56,10 +56,10 @@ std::string LaunchedProcess::others_than(const std::string& body) const {
   std::string names;
   std::size_t count = 0;
   for (const std::string& other : bodies) {
-    if (other == body || count++ >= most_names) continue;
+    if (other == body || count++ >= most_listed) continue;
     names += (names.empty() ? "" : ", ") + other;
   }
-  if (count > most_names) names += fmt::format(" and {} more bodies", count - most_names);
+  if (count > most_listed) names += fmt::format(" and {} more bodies", count - most_listed);
   return names;
 }
 

@@ -10,7 +10,7 @@ namespace abut {
 namespace {
 
 /// Of the coordinates: sides this near are at one place, and have not passed by parting.
-constexpr double place_rounding = 1.0e-12;
+constexpr double rounding_of_places = 1.0e-12;
 /// Of the area of a side: as much of it looks one way where the side has a front at all.
 constexpr double least_flat = 0.5;
 
@@ -35,7 +35,7 @@ Front front_of(const PosedSurface& surface) {
 /// Whether what was before a side is behind it now, or the other way round.
 bool changed(const Front& side, const Front& other, const Front& side_now, const Front& other_now) {
   if (std::min(side.looks.norm(), side_now.looks.norm()) < least_flat) return false;
-  const double none = -place_rounding * (side.at.norm() + other.at.norm());
+  const double none = -rounding_of_places * (side.at.norm() + other.at.norm());
   const double before = side.looks.dot(other.at - side.at);
   const double now = side_now.looks.dot(other_now.at - side_now.at);
   return (before > none) != (now > none);

@@ -21,13 +21,13 @@ std::string cell_element(Draw& draw, int dim) {
 }
 
 /// A box in the frame of a body: from low to high.
-struct Box {
+struct BoxOfCells {
   Eigen::Vector3d low, high;
 };
 
 /// A part of a whole, and which of its sides are tied: (axis, end) by the name of the port.
 struct Piece {
-  Box box;
+  BoxOfCells box;
   std::map<std::string, std::pair<int, int>> tied;
 };
 
@@ -55,7 +55,7 @@ void cut(Draw& draw, std::vector<Piece>& pieces, int axis) {
 }
 
 /// In a row, or the last one across, so that three meet.
-std::vector<Piece> pieces_of(Draw& draw, const Box& box, int dim) {
+std::vector<Piece> pieces_of(Draw& draw, const BoxOfCells& box, int dim) {
   std::vector<Piece> pieces = {{box, {}}};
   const int axis = draw.whole(0, dim - 1);
   cut(draw, pieces, axis);
@@ -107,7 +107,7 @@ bool meet(const Piece& one, const Piece& other, int axis, int dim) {
 /// The parts of one body in its place, and their ties. Numbers of bodies begin at `first`.
 std::vector<RandomBody> parts_of(Draw& draw, const RandomBody& body, int dim, double window,
                                  bool closed, int first, std::vector<RandomTie>& ties) {
-  Box box{body.shape.points[0], body.shape.points[0]};
+  BoxOfCells box{body.shape.points[0], body.shape.points[0]};
   for (const Eigen::Vector3d& x : body.shape.points) {
     box.low = box.low.cwiseMin(x);
     box.high = box.high.cwiseMax(x);
