@@ -83,7 +83,8 @@ class Adding(unittest.TestCase):
         self.assertGreater(len(changed), 2)
         used = [self.folder / name for name in changed
                 if re.search(r"(subdomain_solver/materials|coordinator/coupling)/.*\.cpp$", name)]
-        other = [self.folder / name for name in changed if self.folder / name not in used]
+        other = [self.folder / name for name in changed
+                 if name.endswith((".hpp", ".cpp")) and self.folder / name not in used]
         self.compile("-fsyntax-only", self.unit("changed", sorted(other)))
         proof = self.folder / "proof.cpp"
         proof.write_text(parts["cpp"], encoding="utf-8")

@@ -75,7 +75,7 @@ class KeyList:
 
     def refuse_idle_stars(self, scene: Path, settings: dict, places: dict) -> None:
         """Keys with `*` that mean no key of the scene; `places`: where each of the keys stands."""
-        command = [str(self.abut), "check", str(scene)]
+        command = [str(self.abut), "check", str(scene), "--probe", "0"]  # keys take no step
         for key, value in settings.items():
             command += ["--set", f"{key}={flow_text(value)}"]
         try:

@@ -232,7 +232,7 @@ class Runner:
 def accepts(abut: Path, point: Point, names: list[str]) -> tuple[bool, str]:
     """The program knows which measures a scene has; an expectation makes it say so."""
     expects = [{"measure": name, "at_most": 0, "because": "asked by the study"} for name in names]
-    command = [str(abut), "check", str(point.scene)]
+    command = [str(abut), "check", str(point.scene), "--probe", "0"]  # names take no step
     for key, value in {**point.settings, "meta.expect": expects}.items():
         command += ["--set", f"{key}={flow_text(value)}"]
     try:
@@ -251,12 +251,17 @@ def check_measures(study: Study, abut: Path) -> None:
     names = {name: expression.where for expression in reversed(asked) for name in expression.names
              if name not in own and not name.startswith("closed_form.")}
     scenes = {(point.scene, point.variant): point for point in reversed(study.points)}
-    able = [point for point in reversed(scenes.values()) if accepts(abut, point, [])[0]]
-    for point in able:
-        if not names or accepts(abut, point, list(names))[0]:
+    able = None
+    for point in reversed(scenes.values()):
+        if names and accepts(abut, point, list(names))[0]:
             return
+        if not accepts(abut, point, [])[0]:
+            continue
+        able = point
         names = {name: where for name, where in names.items()
                  if not accepts(abut, point, [name])[0]}
+        if not names:
+            return
     for name, where in names.items() if able else ():
-        said = accepts(abut, able[0], [name])[1].removeprefix(f" '{name}'.")
+        said = accepts(abut, able, [name])[1].removeprefix(f" '{name}'.")
         raise ToolError(f"{where}: there is no measure '{name}'.{said}", 2)
