@@ -8,6 +8,11 @@ target_compile_options(abut_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-res
 # Clang 14 takes a captured `this` of a generic lambda for unused where the call is a template's.
 target_compile_options(abut_warnings INTERFACE
   $<$<CXX_COMPILER_ID:Clang>:-Wno-unused-lambda-capture>)
+# A file's own names shadow its neighbour's where files are compiled at once; each alone is watched by
+# the presets of developers.
+if(ABUT_UNITY)
+  target_compile_options(abut_warnings INTERFACE -Wno-shadow)
+endif()
 option(ABUT_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 if(ABUT_WARNINGS_AS_ERRORS)
   target_compile_options(abut_warnings INTERFACE -Werror)

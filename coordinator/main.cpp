@@ -18,6 +18,7 @@
 #include "base/error.hpp"
 #include "base/input_errors.hpp"
 #include "base/memory_end.hpp"
+#include "base/shell_word.hpp"
 #include "coordinator/command_line.hpp"
 #include "coordinator/external_verb.hpp"
 #include "coordinator/init/init_files.hpp"
@@ -94,8 +95,8 @@ int init_verb(const InitCommand& command) {
   for (const std::string& line : made.words) fmt::print("{}\n", line);
   for (const auto& [path, text] : made.files) fmt::print("written: {}\n", path.string());
   const bool study = command.from == "study";  // its own file is the last one
-  fmt::print("next: abut {} {}\n", study ? "study" : "run",
-             (study ? made.files.back() : made.files.front()).first.string());
+  const std::string own = (study ? made.files.back() : made.files.front()).first.string();
+  fmt::print("next: abut {} {}\n", study ? "study" : "run", shell_word(own));
   return 0;
 }
 

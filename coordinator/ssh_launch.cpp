@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <random>
 
+#include "base/shell_word.hpp"
+
 namespace abut {
 
 namespace {
@@ -77,18 +79,6 @@ std::string far_socket() {
   std::string name = "/tmp/abut-";
   for (int i = 0; i < 4; ++i) name += fmt::format("{:08x}", device());
   return name;
-}
-
-std::string quoted_word(std::string_view text) {
-  std::string word = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      word += "'\\''";
-    } else {
-      word += c;
-    }
-  }
-  return word + '\'';
 }
 
 }  // namespace abut

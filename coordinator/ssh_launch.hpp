@@ -39,7 +39,4 @@ SshCommand ssh_command(const SshLaunch& launch, const std::string& here, const s
 /// A path for a socket on another machine, that nobody can guess.
 std::string far_socket();
 
-/// One word for a shell, whatever it holds.
-std::string quoted_word(std::string_view text);
-
 }  // namespace abut

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "coordinator/ssh_launch.hpp"
+#include "base/shell_word.hpp"
 
 namespace abut {
 

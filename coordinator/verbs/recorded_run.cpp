@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/shell_word.hpp"
 #include "base/unit_words.hpp"
 #include "base/yaml_differences.hpp"
 #include "coordinator/controller.hpp"
@@ -124,11 +125,12 @@ int report(const RunPlan& plan, const RunOptions& options, const fs::path& direc
                end.wall_seconds, end.windows, end.contact_windows, end.exchanges);
     fmt::print("{}", table.times(waited, options.local ? Processes() : processes_of(scene)));
     if (end.state_hash) fmt::print("state  {:016x}\n", *end.state_hash);
-    fmt::print("files  {0}\nplots  abut report {0}\n", directory.string());
+    fmt::print("files  {}\nplots  abut report {}\n", directory.string(),
+               shell_word(directory.string()));
     if (options.trace) fmt::print("trace  {}/trace.json\n", directory.string());
     if (scene.output.field_output) fmt::print("fields {}/fields.pvd\n", directory.string());
     if (kept && status != "completed")
-      fmt::print("go on  abut resume {}, from {:.6g} s\n", directory.string(), *kept);
+      fmt::print("go on  abut resume {}, from {:.6g} s\n", shell_word(directory.string()), *kept);
     if (!kept && status == "interrupted")
       fmt::print(
           "go on  nothing is kept to go on from: the window under way had not ended after {} s "
@@ -140,13 +142,16 @@ int report(const RunPlan& plan, const RunOptions& options, const fs::path& direc
 
 /// The same error, which says where the run's files are as well, and how to go on.
 template <class Error>
-Error with_place_of_files(const Error& error, const fs::path& directory,
-                          std::optional<double> kept) {
+Error with_place_of_files(const Error& error, const fs::path& directory, std::optional<double> kept,
+                          std::string_view otherwise = "") {
   std::string remedy = error.remedy;
   if (remedy.ends_with('.')) remedy.pop_back();
   remedy += fmt::format(". The run up to there is in {}", directory.string());
   if (kept)
-    remedy += fmt::format("; abut resume {} goes on from {:.6g} s", directory.string(), *kept);
+    remedy += fmt::format("; abut resume {} goes on from {:.6g} s", shell_word(directory.string()),
+                          *kept);
+  else
+    remedy += otherwise;
   return Error(error.what_is_wrong, error.where, remedy);
 }
 
@@ -158,7 +163,9 @@ RunEnd conduct(Controller& controller, Checkpoints& checkpoints, const Checkpoin
     if (from != nullptr) checkpoints.resume(*from, controller);
     return controller.run();
   } catch (const LostBody& error) {
-    throw with_place_of_files(error, directory, checkpoints.latest());
+    throw with_place_of_files(error, directory, checkpoints.latest(),
+                              "; no checkpoint was kept before it was lost: output: {checkpoint: "
+                              "...} says how often one is");
   } catch (const RunError& error) {
     throw with_place_of_files(error, directory, checkpoints.latest());
   } catch (const InputError& error) {  // of a body: what it was given does not go together

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "coordinator/record/checkpoint_file.hpp"
 #include "coordinator/run_directory.hpp"
 #include "coordinator/scene_changes.hpp"
 #include "coordinator/verbs/recorded_run.hpp"
@@ -69,6 +72,24 @@ void go_back(Checkpoint& from, const Scene& scene, const std::string& directory)
     log_warning("the run ends where it is resumed: measures of its last step are not known");
 }
 
+/// Nothing reads the scene beside the results again: who edits it must hear that.
+void tell_of_edits(const Checkpoint& from, const std::string& directory) {
+  const std::filesystem::path scene = std::filesystem::path(directory) / "scene.resolved.yaml";
+  std::error_code none;
+  const auto kept = last_write_time(std::filesystem::path(directory) / latest_checkpoint, none);
+  if (none) return;
+  const auto edited = last_write_time(scene, none);
+  if (none || edited <= kept) return;
+  std::ifstream file(scene);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (text == from.scene) return;
+  log_warning(
+      fmt::format("{} has changed since the checkpoint was kept, and is not read: the run "
+                  "goes on with the scene of the checkpoint. Give changes by --set "
+                  "KEY=VALUE, or the scene by --scene FILE",
+                  scene.string()));
+}
+
 void check_end(const Checkpoint& from, const Scene& scene, const std::string& directory) {
   if (!at_end(from, scene) || !has_ended(directory)) return;
   throw InputError(fmt::format("is complete: it has come to its end, {:.6g} s", from.time),
@@ -86,6 +107,7 @@ int resume_verb(const ResumeCommand& command) {
   std::vector<std::string> warnings;
   Checkpoint from = read_checkpoint(held.path(), warnings);
   for (const std::string& warning : warnings) log_warning(warning);
+  if (command.scene.empty()) tell_of_edits(from, command.directory);
   Document document = scene_of(command, from);
   RunPlan plan = plan_run(std::move(document), options, interrupts,
                           from.stage_ends ? std::optional(from.time) : std::nullopt);

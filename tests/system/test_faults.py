@@ -99,7 +99,7 @@ class LostSolvers(FaultTest):
         self.wait_for_windows()
         os.kill(self.solver_of("right"), signal.SIGKILL)
         self.assert_fails(run, 1.0, "body 'right' was killed by signal 9", "tart the run again",
-                          f"is in {self.out}")
+                          f"is in {self.out}", "no checkpoint was kept before it was lost")
         self.assert_failure_is_written("body 'right' was killed by signal 9")
 
     def test_a_solver_killed_in_the_middle_of_a_long_solve_is_named_at_once(self):

@@ -3,6 +3,7 @@ scenes' own expectations, the contacts of the runs, the bytes of the files, exit
 usage: test_init.py ABUT ROOT
 """
 
+import shlex
 import sys
 import unittest
 
@@ -97,6 +98,11 @@ class Init(SystemTest):
         self.assertIn('top_of_it: "top of it"', text)
         self.assertIn("# sets of nodes, for constraints: between, edge, origin", text)
         self.succeed(self.abut("check", "scenes/part.yaml"))
+
+    def test_the_next_command_may_be_typed_as_it_stands(self):
+        said = self.succeed(self.init("it's a scene", "--from", "bars")).stdout
+        command = said.split("next: abut ")[1].strip()
+        self.assertEqual(shlex.split(command), ["run", "it's a scene.yaml"])
 
     def test_files_that_are_there_stay_unless_forced(self):
         (self.folder / "mine_study.yaml").write_text("mine", encoding="utf-8")

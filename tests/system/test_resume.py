@@ -230,6 +230,16 @@ class Changes(Resume):
         self.assertEqual(self.summary()["measures"], before["measures"])
         self.assertEqual(self.summary()["state_hash"], before["state_hash"])
 
+    def test_an_edit_of_the_scene_beside_the_results_is_said_to_have_no_effect(self):
+        resolved = self.out / "scene.resolved.yaml"
+        go_on = (ABUT, "resume", self.out, "--end")
+        untouched = self.end(self.start(*go_on, "5.5"))
+        self.assertNotIn("is not read", self.succeed(untouched).stderr)
+        text = resolved.read_text(encoding="utf-8")
+        resolved.write_text(text.replace("time:", "# mine\ntime:"), encoding="utf-8")
+        ended = self.succeed(self.end(self.start(*go_on, "6.0")))
+        self.assertIn("has changed since the checkpoint was kept, and is not read", ended.stderr)
+
     def test_what_changes_the_motion_is_refused_with_both_values(self):
         words = self.refused("--end", "6.0", "--set", "bodies.block.material.youngs_modulus=1.0")
         self.assertIn("error", words)

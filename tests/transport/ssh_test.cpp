@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shell_word.hpp"
 #include "base/yaml_fields.hpp"
 #include "coordinator/solver_processes.hpp"
 #include "coordinator/ssh_launch.hpp"
@@ -168,12 +169,16 @@ TEST(SshCommand, AsksForNothingAndLendsOneSocket) {
 }
 
 TEST(SshCommand, AWordStaysAWordWhateverItHolds) {
-  for (const std::string word : {"plain", "", "two words", "it's", "$HOME `id` \"\\", "a\nb"}) {
-    const std::string line = "test " + quoted_word(word) + " = \"$WORD\"";
+  for (const std::string word : {"plain", "", "two words", "it's", "$HOME `id` \"\\", "a\nb", "~",
+                                 "a;b", "*", "{a,b}", "runs/two_bars-1", "Größe"}) {
     setenv("WORD", word.c_str(), 1);
-    EXPECT_EQ(std::system(line.c_str()), 0) << word;
+    for (const std::string& written : {quoted_word(word), shell_word(word)}) {
+      const std::string line = "test " + written + " = \"$WORD\"";
+      EXPECT_EQ(std::system(line.c_str()), 0) << written;
+    }
   }
   unsetenv("WORD");
+  EXPECT_EQ(shell_word("runs/two_bars-1"), "runs/two_bars-1");
 }
 
 TEST(SshCommand, SocketsElsewhereAreDrawn) {

@@ -276,13 +276,11 @@ def measure_figures(run: Run) -> list[Figure]:
         if name == "time":
             continue
         unit = measure_unit(name)
+        # The unit stands beside every title, in words of the scene's own system.
         figure = figures.setdefault(
-            unit, Figure(f"measures_{len(figures)}", f"Measures{f' [{unit}]' if unit else ''}",
-                         "measure", unit))
+            unit, Figure(f"measures_{len(figures)}", "Measures", "measure", unit))
         figure.add(name.removeprefix("body."), COLOURS[len(figure.curves) % len(COLOURS)],
                    run.measured["time"], run.measured[name])
-    if len(figures) == 1:
-        next(iter(figures.values())).title = "Measures"
     return list(figures.values())
 
 
