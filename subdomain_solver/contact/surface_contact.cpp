@@ -27,7 +27,7 @@ SurfaceContact::SurfaceContact(std::vector<Surface> surfaces, const std::string&
     const int dim = surface.geometry->dim;
     for (const std::int32_t node : surface.nodes)
       for (int i = 0; i < dim; ++i) dofs_.push_back(node * dim + i);
-    surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0, 0, {}});
+    surfaces_.push_back({std::move(surface), {}, {}, {}, 0.0, 0.0, 0, {}});
   }
   keep_one_each(dofs_);
   for (Own& own : surfaces_) {
