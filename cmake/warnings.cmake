@@ -8,8 +8,8 @@ target_compile_options(abut_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-res
 # Clang 14 takes a captured `this` of a generic lambda for unused where the call is a template's.
 target_compile_options(abut_warnings INTERFACE
   $<$<CXX_COMPILER_ID:Clang>:-Wno-unused-lambda-capture>)
-# A file's own names shadow its neighbour's where files are compiled at once; each alone is watched by
-# the presets of developers.
+# A file's own names shadow its neighbour's where files are compiled at once; the presets of
+# developers watch each alone.
 if(ABUT_UNITY)
   target_compile_options(abut_warnings INTERFACE -Wno-shadow)
 endif()
