@@ -20,6 +20,9 @@ struct Rounding {
 };
 /// Of kernels that are differences of motions under a light push.
 constexpr Rounding light{1.0e-7, 1.0e-6};
+/// Of the softest row of its joint, below which a row is one of those; what gives way more, as
+/// nodes with mass do in short steps beside one without, is of its own size.
+constexpr double digits = 1.0e-9;
 /// Of the softest row: below it a row does not give way.
 constexpr double stiffest = 1.0e-18;
 /// Of what the rows beside it do to a row, squared over their own, below which its own does not
@@ -234,7 +237,9 @@ void DenseTieKernel::find_scale(const TieLayout& layout) {
   for (const TieLayout::Member& member : layout.members) {
     if (member.carried >= 0) continue;
     auto rows = own.segment(member.inner, Eigen::Index{member.width} * member.steps);
-    rows.setConstant(rows.maxCoeff());
+    const double softest = rows.maxCoeff();
+    for (double& row : rows)
+      if (row < digits * softest || row >= rounding_.nothing * softest) row = softest;
   }
   scale_.setOnes(layout.size);
   if (most == 0.0) return;

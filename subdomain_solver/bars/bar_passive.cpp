@@ -122,7 +122,8 @@ std::optional<Failed> BarInterior::leave(double time, double& lost) {
     const std::size_t node = index(bar_->node_of(end)), inner = index(bar_->inner_of(end));
     if (bar_->row_mass()[node] > 0.0 || bar_->data().fixed[end]) continue;
     const double own = midpoint_->mass()[node], whole = bar_->row_mass()[inner];
-    state_.v[inner] += own / whole * (state_.v[node] - state_.v[inner]);
+    // of a bar of two elements both ends give their mass to one node
+    state_.v[inner] += own / whole * (passive.v[node] - passive.v[inner]);
   }
   state_.a.assign(state_.u.size(), 0.0);
   let_go();

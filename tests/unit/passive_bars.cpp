@@ -30,15 +30,18 @@ std::vector<PassiveText> bars() {
   return all;
 }
 
-std::unique_ptr<Subdomain> build(const PassiveText& text) {
-  BodyContext context;
-  if (text.touched) context.ports.push_back({.port = "face", .touches = true, .partners = {}});
-  const std::string whole = fmt::format(
+std::string bar_text(const PassiveText& text) {
+  return fmt::format(
       "bodies: {{it: {{model: {{fe: {{dimension: 1, mesh: {{bar: {{length: 1.0, elements: {}, "
       "area: 0.5}}}}}}}}, material: {{{}}}, integrator: {{{}}}, ports: {{face: {{side: right}}}}"
       "{}{}}}}}",
       text.cells, text.material, text.scheme, text.more.empty() ? "" : ", ", text.more);
-  return make_body(Document::from_text("test", whole), "bodies.it", context);
+}
+
+std::unique_ptr<Subdomain> build(const PassiveText& text) {
+  BodyContext context;
+  if (text.touched) context.ports.push_back({.port = "face", .touches = true, .partners = {}});
+  return make_body(Document::from_text("test", bar_text(text)), "bodies.it", context);
 }
 
 double kept(const BodyRecord& r) { return r.energy.total() - r.energy.external_work; }
@@ -128,6 +131,37 @@ TEST(PassiveBars, GoThereAndBackWithTheirEnergy) {
       const BodyRecord on = advance(run.time, run.time + 0.05);
       // Schemes of finite strain keep their energy to the square of their step.
       EXPECT_LT(kept(on), kept(back) * (1.0 + 1.0e-3));
+    }
+  }
+}
+
+/// Both ends give their mass to nodes within: of two elements to one and the same.
+TEST(PassiveBars, OfFewElementsKeepTheirMomentum) {
+  for (const int elements : {2, 3, 4}) {
+    for (PassiveText text : bars()) {
+      SCOPED_TRACE(fmt::format("{} {}{}", elements, text.material, text.scheme));
+      BodyContext context;
+      for (const char* port : {"face", "tail"})
+        context.ports.push_back({.port = port, .touches = text.touched, .partners = {}});
+      text.cells = elements;
+      text.more = "initial: {velocity_field: ['0.3 + 5 * x']}";
+      const std::string whole =
+          bar_text(text).replace(bar_text(text).find("face: "), 0, "tail: {side: left}, ");
+      const std::unique_ptr<Subdomain> body =
+          make_body(Document::from_text("test", whole), "bodies.it", context);
+      body->passive()->enter();
+      PassiveRun run(nullptr, *body, 0.0);
+      for (int k = 0; k < 5; ++k) run.step(0.003);
+      const BodyRecord last = run.step(0.003, run.random_impulses(0.05)).record;
+      double left = 0.0;
+      ASSERT_TRUE(std::holds_alternative<Advanced>(body->passive()->leave(run.time, left)));
+      Advance request;
+      request.window = {0, run.time, run.time};
+      request.boundary.resize(2);
+      Response response;
+      ASSERT_TRUE(std::holds_alternative<Advanced>(body->advance(request, response)));
+      EXPECT_NEAR(response.records.at(0).momentum[0], last.momentum[0], roundoff(1.0e4, 1.0));
+      EXPECT_LE(kept(response.records.at(0)), kept(last) * (1.0 + roundoff(1.0e4, 1.0)));
     }
   }
 }
