@@ -46,6 +46,7 @@ class InstantBody : public Subdomain {
     geometry.normals.assign(geometry.points.size(), 0.0);  // points without facets face nothing
     if (points == 1) geometry.normals = {1.0};
     description_.can.obstacle = points > 1;
+    description_.can.force = points == 1;
   }
   const Description& describe() const override { return description_; }
   void save() override {}
