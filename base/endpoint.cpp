@@ -6,13 +6,14 @@ namespace abut {
 
 namespace {
 
-/// 127.0.0.0/8 in four numbers: a name of a machine may begin with 127 as well.
+/// 127.0.0.0/8 in four numbers: a name of a machine may begin with 127 as well, and 0127 is 87.
 bool is_loopback_address(std::string_view host) {
   for (int k = 0; k < 4; ++k) {
     int number = -1;
     const auto [end, error] = std::from_chars(host.data(), host.data() + host.size(), number);
     if (error != std::errc() || number < 0 || number > 255 || (k == 0 && number != 127))
       return false;
+    if (host.size() > 1 && host[0] == '0' && host[1] >= '0' && host[1] <= '9') return false;
     host.remove_prefix(static_cast<std::size_t>(end - host.data()));
     if (k == 3) return host.empty();
     if (!host.starts_with('.')) return false;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <utility>
 
 #include "base/endpoint.hpp"
@@ -10,6 +11,13 @@
 #include "messaging/zmq_socket.hpp"
 
 namespace abut {
+
+void warn_of_insecure(const std::string& endpoint, const Access& access) {
+  if (!access.insecure || !access.keys.empty() || is_local_endpoint(endpoint)) return;
+  const std::string warning = fmt::format(
+      "warning: --insecure: whoever is at {} can read and answer what is sent\n", endpoint);
+  std::fputs(warning.c_str(), stderr);
+}
 
 ZmqDealer::ZmqDealer(const std::string& endpoint, const std::string& routing_id,
                      const Limits& limits, std::size_t bodies, const Access& access)

@@ -20,6 +20,9 @@ struct Access {
   bool insecure = false;  // without keys to other machines, too
 };
 
+/// Says on standard error, as a program starts, that it goes to other machines without keys.
+void warn_of_insecure(const std::string& endpoint, const Access& access);
+
 /// A solver's socket: one DEALER whose routing id is the body's name, or that of a process with
 /// several bodies (zmq_group.hpp). With keys it has none: the key says which body it is.
 class ZmqDealer : public Channel {

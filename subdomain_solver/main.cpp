@@ -13,7 +13,6 @@
 
 #include "base/build_info.hpp"
 #include "base/denormals.hpp"
-#include "base/endpoint.hpp"
 #include "base/error.hpp"
 #include "base/memory_end.hpp"
 #include "messaging/descriptors.hpp"
@@ -62,13 +61,7 @@ void serve_bodies(const Command& command) {
   const abut::Milliseconds patience(
       static_cast<abut::Milliseconds::rep>(1000.0 * command.patience));
   abut::require_descriptors(descriptors);
-  const bool open = command.access.keys.empty() && !abut::is_local_endpoint(command.endpoint);
-  if (command.access.insecure && open)
-    std::fputs(
-        fmt::format("warning: --insecure: whoever is at {} can read and answer what is sent\n",
-                    command.endpoint)
-            .c_str(),
-        stderr);
+  abut::warn_of_insecure(command.endpoint, command.access);
   const bool shared = !command.process.empty();
   abut::ZmqDealer dealer(command.endpoint, shared ? command.process : command.bodies.front(),
                          limits, command.bodies.size(), command.access);

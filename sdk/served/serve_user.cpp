@@ -2,16 +2,16 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "abut.h"
 #include "base/denormals.hpp"
-#include "base/endpoint.hpp"
 #include "base/yaml_fields.hpp"
 #include "messaging/descriptors.hpp"
 #include "messaging/serve.hpp"
@@ -49,14 +49,29 @@ std::unique_ptr<Subdomain> make_user_body(const Specification& given, const Prog
   return std::make_unique<ServedBody>(body, std::move(parts), alive);
 }
 
-/// By name: --connect, --body, --keys.
-std::map<std::string, std::string> options_of(int argc, char** argv) {
-  std::map<std::string, std::string> options;
-  for (int i = 1; i < argc; i += 2) {
-    const std::string name = argv[i];
-    if (i + 1 == argc || (name != "--connect" && name != "--body" && name != "--keys")) return {};
-    options[name] = argv[i + 1];
+struct UserOptions {
+  std::string endpoint, name;
+  Access access;
+};
+
+/// None where they are not as abut_serve() takes them.
+std::optional<UserOptions> options_of(int argc, char** argv) {
+  UserOptions options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view option = argv[i];
+    std::string* value = option == "--connect" ? &options.endpoint
+                         : option == "--body"  ? &options.name
+                         : option == "--keys"  ? &options.access.keys
+                                               : nullptr;
+    if (option == "--insecure") {
+      options.access.insecure = true;
+    } else if (value == nullptr || ++i == argc) {
+      return std::nullopt;
+    } else {
+      *value = argv[i];
+    }
   }
+  if (options.endpoint.empty() || options.name.empty()) return std::nullopt;
   return options;
 }
 
@@ -65,15 +80,15 @@ std::map<std::string, std::string> options_of(int argc, char** argv) {
 }  // namespace abut
 
 int abut_serve(int argc, char** argv, abut_make* make, void* with) {
-  std::map<std::string, std::string> options = abut::options_of(argc, argv);
-  if (!options.contains("--connect") || !options.contains("--body")) {
-    std::fputs(fmt::format("usage: {} --connect ENDPOINT --body NAME [--keys DIR]\n",
+  const std::optional<abut::UserOptions> options = abut::options_of(argc, argv);
+  if (!options) {
+    std::fputs(fmt::format("usage: {} --connect ENDPOINT --body NAME [--keys DIR] [--insecure]\n",
                            argc > 0 ? argv[0] : "body")
                    .c_str(),
                stderr);
     return 2;
   }
-  const std::string &endpoint = options["--connect"], &name = options["--body"];
+  const std::string &endpoint = options->endpoint, &name = options->name;
   const auto make_body = [make, with](const abut::Specification& given,
                                       const abut::ProgressHook& alive) {
     return abut::make_user_body(given, alive, make, with);
@@ -83,7 +98,8 @@ int abut_serve(int argc, char** argv, abut_make* make, void* with) {
     const abut::Limits limits;
     const abut::Deadlines deadlines;
     abut::require_descriptors(abut::user_descriptors);
-    abut::ZmqDealer dealer(endpoint, name, limits, 1, abut::Access{options["--keys"], false});
+    abut::warn_of_insecure(endpoint, options->access);
+    abut::ZmqDealer dealer(endpoint, name, limits, 1, options->access);
     abut::CoordinatorLiveness coordinator(dealer, endpoint, deadlines);
     abut::Server server(name, make_body, dealer, coordinator, limits, deadlines);
     abut::serve(server, abut::user_patience);

@@ -128,6 +128,18 @@ class Cpp(NativeTest):
         exact = 0.2 * (1.0 - math.exp(-100.0 * 1.0e-3 / 0.2))  # as in test_first_hour.py
         self.assertLess(abs(measures["momentum.mass.end"] / exact - 1.0), 0.005)
 
+    def test_other_machines_need_keys_or_the_users_word(self):
+        call = [self.program("mass_on_spring"), "--connect", "tcp://machine.example:5555",
+                "--body", "mass"]
+        refused = self.end(self.start(*call))
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("--insecure on a network that you trust.", refused.stderr)
+        insisting = self.start(*call, "--insecure")
+        self.addCleanup(insisting.communicate)
+        self.addCleanup(insisting.kill)
+        self.assertIn("warning: --insecure: whoever is at tcp://machine.example:5555 can read",
+                      insisting.stderr.readline())
+
     def test_its_header_reads_nothing_else_of_abut_nor_of_its_libraries(self):
         source = self.folder / "alone.cpp"
         source.write_text("#include <abut.hpp>\n", encoding="utf-8")

@@ -16,6 +16,9 @@ import time
 import yaml
 from support import ABUT, PACKAGE, ROOT, SystemTest, free_port, main
 
+sys.path.insert(0, str(PACKAGE))
+from abut.access import is_local  # noqa: E402
+
 FOLDER = ROOT / "examples" / "python_body"
 PROGRAM = FOLDER / "mass_on_spring.py"
 SCENE = FOLDER / "bar_meets_mass.yaml"
@@ -128,6 +131,49 @@ class Motion(PythonTest):
         self.succeed(self.end(run))
         self.succeed(self.end(body))
         self.assertEqual(self.summary()["state_hash"], self.summary(open_run)["state_hash"])
+
+    def test_other_machines_need_keys_or_the_users_word(self):
+        network = ["--connect", "tcp://machine.example:5555", "--body", "mass"]
+        refused = self.start(sys.executable, PROGRAM, *network)
+        self.assert_error(refused, 2, 20.0, "body mass: --connect: tcp://machine.example:5555 is "
+                          "on a network", "--keys DIR", "--insecure on a network that you trust.")
+        for far in ("tcp://127.example.org:1", "tcp://127.0.0.1.example.org:1",
+                    "tcp://0127.0.0.1:1", "tcp://10.1.2.3:5555"):
+            self.assertFalse(is_local(far), far)
+        for near in ("tcp://127.3.2.1:5555", "tcp://localhost:5555", "ipc:///nowhere/here"):
+            self.assertTrue(is_local(near), near)
+        insisting = self.start(sys.executable, PROGRAM, *network, "--insecure")
+        self.addCleanup(insisting.communicate)
+        self.addCleanup(insisting.kill)
+        self.assertIn("warning: --insecure: whoever is at tcp://machine.example:5555 can read",
+                      insisting.stderr.readline())
+
+    def test_keys_that_are_missing_open_or_none_are_refused_in_words(self):
+        keys = self.folder / "keys"
+        program = [sys.executable, PROGRAM, "--connect", self.endpoint, "--keys", keys, "--body"]
+        self.assert_error(self.start(*program, "mass"), 2, 20.0, f"body mass: {keys}: cannot be "
+                          f"read: No such file or directory. Make keys: abut keygen {keys} BODY")
+        self.succeed(self.abut("keygen", keys, "mass"))
+        self.assert_error(self.start(*program, "other"), 2, 20.0,
+                          f"{keys}/other.key_secret: cannot be read", f"abut keygen {keys} BODY")
+        self.assert_error(self.start(*program, "../mass"), 2, 20.0, "can be no body with a key")
+        secret, public = keys / "mass.key_secret", keys / "coordinator.key"
+        for path, mode, words in ((secret, 0o644, "chmod go-rwx"), (public, 0o666, "chmod go-w"),
+                                  (keys, 0o770, "chmod go-w")):
+            before = path.stat().st_mode
+            path.chmod(mode)
+            self.assert_error(self.start(*program, "mass"), 2, 20.0,
+                              f"{path}: may be ", f"permissions are {mode:03o}. Close it: "
+                              f"{words} {path}.")
+            path.chmod(before)
+        text = secret.read_text("utf-8")
+        secret.write_text(text.replace("secret-key", "sacred-key"), "utf-8")
+        self.assert_error(self.start(*program, "mass"), 2, 20.0, f"{secret}: has no secret-key")
+        self.succeed(self.abut("keygen", keys, "twin"))
+        other = (keys / "twin.key").read_text("utf-8").split("curve")[1]
+        secret.write_text(other + text[text.index("    secret-key"):], "utf-8")
+        self.assert_error(self.start(*program, "mass"), 2, 20.0,
+                          "holds a public key that does not belong to its secret one")
 
     def test_the_order_of_starting_changes_nothing(self):
         body = self.body()

@@ -296,7 +296,8 @@ TEST(Access, WithoutKeysASolverGoesToNoOtherMachineUnlessTold) {
     ZmqDealer(endpoint, "left", Limits{}, 1, Access{"", insecure});
   };
   for (const char* endpoint : {"tcp://192.0.2.1:5555", "tcp://127.example.org:5555",
-                               "tcp://127.0.0.1.example.org:5555", "tcp://machine:5555"}) {
+                               "tcp://127.0.0.1.example.org:5555", "tcp://machine:5555",
+                               "tcp://0127.0.0.1:5555"}) {
     EXPECT_THROW(connect(endpoint, false), InputError) << endpoint;
   }
   EXPECT_NO_THROW(connect("tcp://192.0.2.1:5555", true));

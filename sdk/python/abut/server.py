@@ -9,8 +9,8 @@ import traceback
 
 import xxhash
 import zmq
-import zmq.auth
 
+from abut.access import read_body_keys, require_closed_endpoint
 from abut.answers import Answers, told_fault
 from abut.errors import InputError, Unsound
 from abut.v1 import subdomain_pb2 as pb
@@ -31,7 +31,9 @@ def sealed(message) -> bytes:
 
 
 class Server:
-    def __init__(self, make, endpoint: str, name: str, keys: str | None = None):
+    def __init__(self, make, endpoint: str, name: str, keys: str | None = None,
+                 insecure: bool = False):
+        require_closed_endpoint(endpoint, keys, insecure)
         self.endpoint, self.name = endpoint, name
         self.session = random.SystemRandom().getrandbits(63) | 1  # tells this process from others
         self.answers = Answers(make, self.alive)
@@ -41,17 +43,21 @@ class Server:
         self.socket.setsockopt(zmq.LINGER, 500)
         self.identify(keys)
         self.lost = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
-        self.socket.connect(endpoint)
+        try:
+            self.socket.connect(endpoint)
+        except zmq.ZMQError as error:
+            raise InputError(f"cannot connect body '{name}' to '{endpoint}': {error}", "--connect",
+                             "Give the coordinator's endpoint, for example tcp://127.0.0.1:5555."
+                             ) from error
 
     def identify(self, keys: str | None):
         """With keys the key says which body this is, else its name does."""
-        if keys is None:
+        if not keys:
             self.socket.setsockopt(zmq.ROUTING_ID, self.name.encode())
             return
-        load = zmq.auth.load_certificate
-        self.socket.curve_serverkey, _ = load(f"{keys}/coordinator.key")
-        self.socket.curve_publickey, self.socket.curve_secretkey = load(
-            f"{keys}/{self.name}.key_secret")
+        own = read_body_keys(keys, self.name)
+        self.socket.curve_serverkey = own.coordinator
+        self.socket.curve_publickey, self.socket.curve_secretkey = own.public, own.secret
 
     def run(self):
         """Until Finish. Leaves where there is no coordinator, or none any more."""
@@ -117,5 +123,12 @@ def serve(make):
     parser.add_argument("--connect", required=True, help="endpoint of the coordinator")
     parser.add_argument("--body", required=True, help="name of the body in the scene")
     parser.add_argument("--keys", help="folder with coordinator.key and NAME.key_secret")
+    parser.add_argument("--insecure", action="store_true", help="connect to another machine "
+                        "without keys, on a network that you trust")
     options = parser.parse_args()
-    Server(make, options.connect, options.body, options.keys).run()
+    try:
+        server = Server(make, options.connect, options.body, options.keys, options.insecure)
+    except InputError as error:
+        print(f"body {options.body}: {error}", file=sys.stderr)
+        sys.exit(2)
+    server.run()
