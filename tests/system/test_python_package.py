@@ -180,6 +180,32 @@ class Derived(unittest.TestCase):
             Served(body)
         self.assertIn("has 2 numbers at port face, not 1", str(raised.exception))
 
+    def test_arrays_of_one_number_are_taken_for_it_and_others_refused(self):
+        """What is told of a window, where a user's methods give arrays."""
+        def told(own):
+            body = type("Own", (Mass,), own)(MASS)
+            reply, answers = pb.Reply(), Answers(None, lambda: None)
+            answers.served = Served(body)
+            force = wave(pb.FORCE_SUPPORT_STEP, [0.0, 1.0e-5], [[50.0], [50.0]])
+            ask = pb.Advance(window=pb.TimeWindow(begin=0.0, end=1.0e-5), records=1,
+                             boundary=[pb.BoundaryData(forces=[force])])
+            answers.answer(pb.Request(advance=ask), reply)
+            self.assertEqual(reply.WhichOneof("body"), "advanced")
+            return reply.advanced
+
+        def step(given):
+            return {"step": lambda body, dt, force: Mass.step(body, dt, force) or given}
+        for array in (np.array([0.25]), np.array([[0.25]]), np.float32(0.25), [0.25]):
+            self.assertEqual(told(step(array)).ports[0].work, 0.5)  # of two steps
+            own = {"energy": lambda body, e=array: (e, 0.0), "speed_bound": lambda body, e=array: e}
+            self.assertEqual(told(own).records[0].kinetic, 0.25)
+            self.assertEqual(told(own).ports[0].speed_bound, 0.25)
+        for wrong, words in ((np.zeros(2), "gives 2 numbers where one is meant: the energy [J]"),
+                             ("much", "gives what is no number"), ({}, "gives what is no number")):
+            with self.subTest(words), self.assertRaises(InputError) as raised:
+                told(step(wrong))
+            self.assertIn("step(): " + words, str(raised.exception))
+
     def test_patches_of_a_plate_stretch_without_force_inside(self):
         """The example's own mechanics: a linear motion is in balance at inner nodes."""
         plate = Plate(PLATE)

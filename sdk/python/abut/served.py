@@ -13,6 +13,18 @@ from abut.v1 import subdomain_pb2 as pb
 OWN = 8  # bytes of the length that stands before the user's part of a kept state
 
 
+def one_number(given, what: str, meaning: str) -> float:
+    """Of a number, or of an array that holds one and nothing else."""
+    try:
+        value = np.asarray(given, float)
+    except (TypeError, ValueError):
+        value = None
+    if value is None or value.size != 1:
+        gives = "what is no number" if value is None else f"{value.size} numbers"
+        raise InputError(f"gives {gives} where one is meant: {meaning}", what, "Give one number.")
+    return value.item()
+
+
 class Served:
     """Motion and force of all ports are arrays (points x dim) by port, whatever shape the user's
     body has them in."""
@@ -58,7 +70,17 @@ class Served:
         self.acceleration = [(now - last) / dt for now, last in zip(self.velocity(), speed)]
         if brought is None:
             return [float(force @ way) for force, way in zip(acting, ways)]
-        return [brought[name] for name, _ in self.ports] if self.several else [brought]
+        return [one_number(work, "step()", "the energy [J] that came through a port")
+                for work in self._by_port(brought)]
+
+    def _by_port(self, brought):
+        names = [name for name, _ in self.ports]
+        if not self.several:
+            return [brought]
+        if not isinstance(brought, dict) or not set(names) <= set(brought):
+            raise InputError("gives no dict with the energy [J] of every port", "step()",
+                             f"Give one with {', '.join(names)}, or None.")
+        return [brought[name] for name in names]
 
     def displacement(self):
         return self._flat(self.body.displacement(), "displacement()")
@@ -90,7 +112,8 @@ class Served:
 
     def tell_record(self, to, time: float):
         """Energy and momentum, now."""
-        energy = Energy(*self.body.energy())
+        energy = Energy(*(one_number(each, "energy()", "an energy [J]")
+                          for each in self.body.energy()))
         to.time, to.kinetic, to.stored = time, energy.kinetic, energy.stored
         to.dissipated, to.external_work = energy.dissipated, energy.external_work
         if not math.isinf(self.body.mass):

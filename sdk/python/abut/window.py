@@ -6,6 +6,7 @@ import numpy as np
 
 from abut.errors import NotConverged
 from abut.forces import impulses, values
+from abut.served import one_number
 from abut.v1 import subdomain_pb2 as pb
 
 ROUNDING = 1.0e-6  # of a step: less than this is no step of its own
@@ -132,7 +133,8 @@ class Window:
 
     def fill(self, reply):
         body = self.served.body
-        bound, rise = body.speed_bound(), body.acceleration_bound()
+        bound = one_number(body.speed_bound(), "speed_bound()", "a speed [m/s]")
+        rise = one_number(body.acceleration_bound(), "acceleration_bound()", "a rise [m/s^2]")
         for p, track in enumerate(self.tracks):
             port = reply.ports.add(work=track.work, speed_bound=bound, acceleration_bound=rise)
             port.lower.extend(np.concatenate(track.lower).tolist())
