@@ -18,6 +18,8 @@ COPY --from=build /image/usr/local /usr/local
 RUN useradd --system --uid 10001 --no-create-home abut \
   && install -d -o abut -g abut /abut/runs && install -d -o abut -g abut -m 700 /abut/keys \
   && ln -s /usr/local/share/abut/configs /usr/local/share/abut/studies /abut/
+# For bodies in Python, which a cluster starts without abut.
+ENV PYTHONPATH=/usr/local/share/abut/python
 USER abut
 WORKDIR /abut
 ENTRYPOINT ["abut"]

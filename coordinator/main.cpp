@@ -153,6 +153,7 @@ int kubernetes_verb(const KubernetesCommand& command) {
     files.emplace_back(directory / name, text);
   write_new(files, command.force, "--out");
   for (const auto& [path, text] : files) fmt::print("written: {}\n", path.string());
+  for (const std::string& need : needs_of_image(processes)) fmt::print("note: {}\n", need);
   std::string names;
   for (const ProcessPlan& process : processes) names += ' ' + process.name;
   fmt::print("next: abut keygen {0}/keys{1} && kubectl apply -k {0}\n", directory.string(), names);

@@ -54,7 +54,10 @@ void TimeSpec::fields(Fields& f) {
 }
 
 void SpawnLaunch::fields(Fields& f) {
-  f.optional("program", program, "", "path of the solver program; empty: abut-solver beside abut");
+  f.optional(
+      "program", program, "",
+      "path of the solver program, from the folder in which abut is started; without a slash a "
+      "name on the PATH; empty: abut-solver beside abut");
 }
 
 void ConnectLaunch::fields(Fields& f) {
@@ -66,9 +69,7 @@ void GroupLaunch::fields(Fields& f) {
   f.required("name", group, "",
              "name of the group, whose bodies share one process; launch: {group: NAME} is short "
              "for launch: {group: {name: NAME}}");
-  f.optional("program", program, "",
-             "path of the solver program, the same for all bodies of the group; empty: abut-solver "
-             "beside abut");
+  f.optional("program", program, "", "the same for all bodies of the group: as spawn.program");
   f.check(!group.empty(), "name", "is empty", "Give the group a name.");
 }
 

@@ -161,8 +161,10 @@ std::string kustomization(const std::string& run, const Packed& packed,
       "folder:\n"
       "#   abut keygen keys");
   for (const ProcessPlan& process : processes) text += ' ' + process.name;
+  text += '\n';
+  for (const std::string& need : needs_of_image(processes)) text += fmt::format("# {}\n", need);
   text +=
-      "\napiVersion: kustomize.config.k8s.io/v1beta1\nkind: Kustomization\nresources:\n"
+      "apiVersion: kustomize.config.k8s.io/v1beta1\nkind: Kustomization\nresources:\n"
       "  - coordinator.yaml\n  - bodies.yaml\nconfigMapGenerator:\n";
   text += fmt::format("  - name: {}-scene\n    files:\n", run);
   for (const auto& [name, content] : packed.files)
@@ -202,6 +204,19 @@ std::string resource_name(const std::string& text) {
   while (name.starts_with('-')) name.erase(0, 1);
   while (name.ends_with('-')) name.pop_back();
   return name.empty() ? "run" : name;
+}
+
+std::vector<std::string> needs_of_image(const std::vector<ProcessPlan>& processes) {
+  std::vector<std::string> needs;
+  for (const ProcessPlan& process : processes) {
+    if (process.program.empty()) continue;
+    const bool whole = process.program.starts_with('/');
+    needs.push_back(fmt::format(
+        "The image must hold the program of {}, {}{}: none is taken along from here. Another "
+        "path there: --set bodies.{}.launch.spawn.program=PATH",
+        process.name, in_quotes(process.program), whole ? "" : " on its PATH", process.name));
+  }
+  return needs;
 }
 
 std::vector<std::pair<std::string, std::string>> kubernetes_files(

@@ -26,6 +26,9 @@ struct KubernetesJob {
 std::vector<std::pair<std::string, std::string>> kubernetes_files(
     const KubernetesJob& job, const std::vector<ProcessPlan>& processes);
 
+/// What the image must hold beside abut, in a sentence for each program of somebody else.
+std::vector<std::string> needs_of_image(const std::vector<ProcessPlan>& processes);
+
 /// A name of a resource: letters in lower case, digits and hyphens, 40 at most.
 std::string resource_name(const std::string& text);
 

@@ -115,6 +115,11 @@ std::string slurm_script(const SlurmJob& job, const std::vector<ProcessPlan>& pr
                       fmt::arg("out", quoted_word(job.directory)),
                       fmt::arg("names", fmt::join(names, " ")), fmt::arg("overrides", overrides),
                       fmt::arg("step", job.again ? many_steps : one_step));
+  if (std::ranges::any_of(processes, [](const ProcessPlan& each) { return !each.program.empty(); }))
+    text +=
+        "export PYTHONPATH=\"${PYTHONPATH:+$PYTHONPATH:}${programs}../share/abut/python\"  # as "
+        "abut "
+        "run does\n";
   for (const ProcessPlan& process : processes) {
     text += fmt::format("step {} ", process.threads);
     text += process.program.empty() ? "\"${programs}abut-solver\" --patience 600"

@@ -1,10 +1,12 @@
 #include "coordinator/verbs/placed_scene.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -122,6 +124,22 @@ Placement place(const Scene& scene, const Document& document, bool local,
   return placement;
 }
 
+namespace {
+
+/// Programs that are named from the folder of this process are so wherever the run goes on; a name
+/// without a slash is looked for on the PATH.
+void name_whole_programs(Scene& scene) {
+  for (auto& [name, entry] : scene.bodies) {
+    std::string* program = nullptr;
+    if (SpawnLaunch* spawn = std::get_if<SpawnLaunch>(&entry.launch)) program = &spawn->program;
+    if (GroupLaunch* group = std::get_if<GroupLaunch>(&entry.launch)) program = &group->program;
+    if (program != nullptr && program->find('/') != program->npos)
+      *program = std::filesystem::absolute(*program).lexically_normal().string();
+  }
+}
+
+}  // namespace
+
 Scene read_all_keys(const Document& document) {
   InputErrors errors;
   Scene scene = read_scene(document, errors);
@@ -129,6 +147,7 @@ Scene read_all_keys(const Document& document) {
   errors.raise();
   check_units(document);
   if (const std::optional<Document> stage = document.next_stage()) read_all_keys(*stage);
+  name_whole_programs(scene);
   return scene;
 }
 

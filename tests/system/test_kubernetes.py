@@ -144,6 +144,25 @@ class Files(KubernetesTest):
         self.assertEqual(retries, {"two-bars-coordinator": 0, "two-bars-left": 6,
                                    "two-bars-right": 6})
 
+    def test_what_the_image_must_hold_is_said(self):
+        scene = ROOT / "examples" / "python_body" / "bar_meets_mass.yaml"
+        launch = "bodies.mass.launch={spawn: {program: %s}}"
+        for program, words in (("./py/ball.py", f'"{self.folder}/py/ball.py": none'),
+                               ("ball", '"ball" on its PATH: none')):
+            folder = self.folder / program.replace("/", "")
+            said = self.succeed(self.abut("kubernetes", scene, "-o", folder, "--set",
+                                          launch % program, "--set", "network=null")).stdout
+            need = f"The image must hold the program of mass, {words} is taken along from here."
+            self.assertIn(f"\nnote: {need}", said)
+            self.assertIn(f"\n# {need}", (folder / "kustomization.yaml").read_text("utf-8"))
+        (first,) = [job for job in yaml.safe_load_all(
+            (self.folder / "." / ".pyball.py" / "bodies.yaml").read_text("utf-8"))
+            if job["metadata"]["name"].endswith("mass")]
+        self.assertEqual(first["spec"]["template"]["spec"]["containers"][0]["command"][0],
+                         f"{self.folder}/py/ball.py")
+        self.assertNotIn("image must", self.succeed(
+            self.abut("kubernetes", SCENE, "-o", self.folder / "ours")).stdout)
+
     def test_what_cannot_be_is_refused(self):
         stages = self.abut("kubernetes", ROOT / "configs" / "contact" / "preload_then_impact.yaml")
         self.assertEqual(stages.returncode, 2)

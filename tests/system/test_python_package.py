@@ -334,6 +334,24 @@ class Runs(SystemTest):
         self.assertEqual((part / "history.csv").read_bytes(),
                          (self.out / "history.csv").read_bytes())
 
+    def test_a_run_goes_on_from_another_folder_than_it_began_in(self):
+        """Its program is named from the folder where it began."""
+        self.write("mass.py", ONE_END)
+        body = ("    launch: {spawn: {program: ./mass.py}}\n    model: {external: {mass: 0.2, "
+                "at: %s, looks: %s, velocity: %s, spacing: 0.01}}\n")
+        scene = self.write("masses.yaml", "time: {end: 1.0e-3, window: 2.0e-5}\nbodies:\n  one:\n"
+                           + body % (0.0, 1.0, 1.0) + "  two:\n" + body % (0.001, -1.0, 0.0) +
+                           "interfaces:\n  impact: {sides: [one.face, two.face], contact: {}}\n"
+                           "output: {checkpoint: {windows: 10}}\n")
+        self.succeed(self.abut("run", scene, "--out", self.out))
+        resolved = (self.out / "scene.resolved.yaml").read_text("utf-8")
+        self.assertEqual(resolved.count(f'program: "{self.folder}/mass.py"'), 2)
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        self.succeed(self.end(self.start("env", "-C", elsewhere, ABUT, "resume", self.out, "--end",
+                                         "2.0e-3")))
+        self.assertEqual(self.summary()["status"], "completed")
+
     def test_a_body_without_inertia_passes_the_patch_test(self):
         program = self.write("block.py", STATICS)
         text = (ROOT / "configs/contact/patch_2d.yaml").read_text("utf-8")

@@ -79,6 +79,11 @@ class Scripts(SystemTest):
                       refused.stderr)
         self.allow(program)
         self.assertIn(f"step 1 '{program}' '--body'", self.script(*more, scene=scene))
+        near = [word.replace(str(program), "./solver") for word in more]
+        self.assertIn(f"step 1 '{program}' '--body'", self.script(*near, scene=scene))
+        self.assertRegex(self.script(*near, scene=scene),
+                         r"\nexport PYTHONPATH=.*share/abut/python")
+        self.assertNotIn("PYTHONPATH", self.script())
         connect = [word for name in keys for word in
                    ("--set", f"bodies.{name}.launch={{connect: {{}}}}")]
         unknown = self.abut("slurm", scene, *connect)
