@@ -19,9 +19,10 @@ from support import ABUT, PACKAGE, ROOT, SystemTest, main  # noqa: E402
 
 CMAKE = sys.argv[3]
 BUILD = ABUT.parents[1]
-sys.path[:0] = [str(PACKAGE), str(ROOT / "packaging")]
+sys.path[:0] = [str(PACKAGE), str(ROOT / "packaging"), str(ROOT / "tests/tidy")]
 from abut_tools.complete import completed, kinds_in  # noqa: E402
 from completions import bash_options, zsh_case  # noqa: E402
+from docs import LINK, check_link, prose  # noqa: E402
 from help_text import help_of, parsed, verbs_of  # noqa: E402
 
 # What is not beside the programs is not found: no abut of this machine may help.
@@ -163,6 +164,26 @@ class Places(Install):
     def test_what_is_not_installed_is_not_uninstalled(self):
         said = self.uninstall(self.prefix, code=1)
         self.assertIn("make uninstall PREFIX=", said)
+
+
+class Documents(Install):
+    """Those of tests/tidy/docs.py, where they are installed."""
+
+    def test_what_they_link_to_is_there(self):
+        self.install(self.prefix)
+        self.install(self.prefix)  # links are as well where they have been changed before
+        folder, links, dead = self.prefix / "share/doc/abut", 0, []
+        for path in folder.rglob("*.md"):
+            name = path.relative_to(folder).as_posix()
+            for _, line in prose(path.read_text("utf-8").splitlines()):
+                for target in LINK.findall(line):
+                    if re.match(r"[a-z]+:", target):
+                        continue
+                    links += 1
+                    if wrong := check_link(folder, name, target):
+                        dead.append(f"{name}: {wrong}")
+        self.assertEqual(dead, [])
+        self.assertGreater(links, 300)
 
 
 class Words(Install):
