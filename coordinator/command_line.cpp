@@ -168,10 +168,8 @@ CLI::App& add_init(CLI::App& app, InitCommand& init) {
   verb.add_option("name", init.name, "the scene's file, with or without .yaml")
       ->required()
       ->type_name("NAME");
-  verb.add_option(
-          "--from", init.from,
-          "what it is of: bars, contact, friction, joined, study, mesh or gmsh; default bars")
-      ->type_name("KIND");
+  verb.add_option("--from", init.from, "what it is of; default bars")
+      ->type_name("{bars,contact,friction,joined,study,mesh,gmsh}");
   verb.add_option("mesh", init.meshes, "mesh files of --from mesh (.msh, .inp), a body each")
       ->type_name("MESH");
   verb.add_flag("--force", init.force, "replace the files that are there");

@@ -10,8 +10,9 @@ from help_text import Help, Item, help_of, verbs_of
 
 HERE = Path(__file__).resolve().parent
 KINDS = {"key.path=value": "KEY", "SCENE": "SCENE", "DIR": "DIR", "FILE": "FILE",
-         "PROGRAM": "PROGRAM"}
-ZSH = {"KEY": "_abut_keys", "SCENE": '_files -g "*.yaml(-.)"', "DIR": "_files -/",
+         "PROGRAM": "PROGRAM", "KEY": "KEY_PATH", "MESH": "MESH"}
+ZSH = {"KEY": "_abut_keys", "KEY_PATH": "_abut_key_paths",
+       "MESH": '_files -g "*.(msh|inp)(-.)"', "SCENE": '_files -g "*.yaml(-.)"', "DIR": "_files -/",
        "FILE": "_files", "PROGRAM": "_files", "STUDY": '_files -g "*.yaml(-.)"', "OTHER": " "}
 
 
@@ -23,12 +24,11 @@ def kind_of(operand: str) -> str:
 
 
 def operand_kind(command: str, said: Help) -> str:
-    """Of the word beside the options; every program of ours has one at most."""
-    for item in said.items("arguments"):
-        if command == "abut-study":
-            return "STUDY"
-        return next((kind_of(word) for word in item.term.split() if word in KINDS), "OTHER")
-    return "OTHER"
+    """Of the words beside the options: the first kind that is known. A name comes before it."""
+    if command == "abut-study":
+        return "STUDY"
+    words = [word for item in said.items("arguments") for word in item.term.split()]
+    return next((kind_of(word) for word in words if word in KINDS), "OTHER")
 
 
 def bash_case(command: str, words: list[str]) -> str:
@@ -63,8 +63,11 @@ def zsh_option(item: Item) -> list[str]:
 def zsh_case(command: str, said: Help) -> str:
     words = [spec for item in said.items("options") for spec in zsh_option(item)]
     if said.items("arguments"):
-        words.append(quoted(f"1:{operand_kind(command, said).lower()}:"
-                            f"{ZSH[operand_kind(command, said)]}"))
+        kind = operand_kind(command, said)
+        if kind == "MESH":
+            words.append(quoted(f"1:name:{ZSH['OTHER']}"))
+        place = "*" if kind == "MESH" else "1"
+        words.append(quoted(f"{place}:{kind.lower()}:{ZSH[kind]}"))
     lines = " \\\n        ".join(words)
     return f"    {command})\n      _arguments \\\n        {lines} ;;"
 

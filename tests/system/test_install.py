@@ -247,6 +247,27 @@ class Words(Install):
         self.assertEqual(values, {"connect"})  # readline has a word begin behind "="
         self.assertEqual(other, {"--process", "--patience"})
 
+    def test_bash_completes_kinds_meshes_paths_of_keys_and_materials(self):
+        self.install(self.prefix)
+        shutil.copy(self.prefix / "share/abut/configs/two_bars.yaml", self.folder / "scene.yaml")
+        for name in ("part.msh", "part.inp", "part.txt"):
+            (self.folder / name).touch()
+        kinds, some, meshes, none, keys, deep, material = self.completions(
+            "abut init x --from ", "abut init x --from m", "abut init x --from mesh p",
+            "abut init x --from bars p", "abut reference ti", "abut reference bodies.*.mater",
+            "abut run scene.yaml --set bodies.left.material=s")
+        self.assertLessEqual({"bars", "study", "mesh", "gmsh"}, kinds)
+        self.assertEqual(some, {"mesh"})
+        self.assertEqual(meshes, {"part.msh", "part.inp", "prefix"})
+        self.assertEqual(none, set())
+        self.assertEqual(keys, {"time."})
+        self.assertEqual(deep, {"bodies.*.material", "bodies.*.material."})
+        self.assertEqual(material, {"saint_venant_kirchhoff", "steel"})
+        zsh = (self.prefix / "share/zsh/site-functions/_abut").read_text("utf-8")
+        for words in ("[what it is of; default bars]:word:(bars contact friction ",
+                      "'*:mesh:_files -g \"*.(msh|inp)(-.)\"'", "'1:key_path:_abut_key_paths'"):
+            self.assertIn(words, zsh)
+
     def test_both_forms_of_help_are_read(self):
         first = parsed("title\nUsage: p [OPTIONS] scene\n\nPositionals:\n"
                        "  scene SCENE REQUIRED   it\n\nOptions:\n  -h,--help    help\n"

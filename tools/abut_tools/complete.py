@@ -42,7 +42,16 @@ def words_of(kind: str) -> list[str]:
     if kind.startswith("true or false"):
         return ["true", "false"]
     words = re.match(r"(?:one|choice) of ([\w, ]+)", kind)
+    return listed(words)
+
+
+def listed(words: re.Match | None) -> list[str]:
     return [each.strip() for each in words[1].split(",")] if words else []
+
+
+def names_of(kind: str) -> list[str]:
+    """Those that may stand in the place of a choice with its keys: steel."""
+    return listed(re.search(r"; or the name ([\w, ]+)", kind))
 
 
 def parts_of(key: str) -> list[str]:
@@ -135,7 +144,7 @@ def values_of(kinds: dict[str, str], key: str) -> list[str]:
     for known, kind in kinds.items():
         pattern = parts_of(known)
         if len(pattern) == len(parts) and all(map(is_at, pattern, parts)):
-            return words_of(kind)
+            return words_of(kind) + names_of(kind)
     return []
 
 
