@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <sstream>
 #include <tuple>
 #include <utility>
 
@@ -126,6 +127,19 @@ Way way_to(const KeySection& section, std::span<const std::string> steps) {
   return way;
 }
 
+/// Of paths, a line each, the shortest that end with this one: what was meant where somebody left
+/// out the keys above.
+std::string ends_of_paths(const std::string& paths, std::string_view end) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> found;
+  std::istringstream lines(paths);
+  for (std::string line; std::getline(lines, line);)
+    if (line.ends_with("." + std::string(end))) found.push_back(line);
+  std::ranges::stable_sort(found, {}, &std::string::size);
+  found.resize(std::min(found.size(), most));
+  return fmt::format("{}", fmt::join(found, ", "));
+}
+
 std::string entry(const KeyRow& row) {
   std::string text = fmt::format("{}\n    {}", row.path, row.type);
   if (!row.unit.empty()) text += fmt::format(" [{}]", row.unit);
@@ -169,14 +183,17 @@ std::string Reference::part(std::string_view path) const {
       farthest = way;
       known.clear();
     }
-    if (way.steps == farthest.steps && way.path == path_of_items(*way.node, way.path))
+    const bool within = way.steps >= split_path(section.path).size();  // else no key of its own
+    if (within && way.steps == farthest.steps && way.path == path_of_items(*way.node, way.path))
       for (const KeyNode& key : way.node->keys)
         if (std::ranges::find(known, key.name) == known.end()) known.push_back(key.name);
   }
   if (!out.empty()) return out;
+  const std::string deeper = ends_of_paths(key_paths(), path);
   throw InputError("is not a key of a scene", std::string(path),
-                   known.empty() ? "The key before it has none below."
-                                 : suggestion(steps[farthest.steps], known, "There are:"));
+                   !deeper.empty() ? fmt::format("There is {}.", deeper)
+                   : known.empty() ? "The key before it has none below."
+                                   : suggestion(steps[farthest.steps], known, "There are:"));
 }
 
 }  // namespace abut

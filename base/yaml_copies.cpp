@@ -7,6 +7,7 @@
 #include <cctype>
 #include <optional>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/input_errors.hpp"
@@ -60,7 +61,7 @@ struct Lengths {
   void check(const std::vector<double>& values, const std::string& path) const {
     const bool absent = values.size() == 1 && values[0] == 0.0;  // as the body's reader has it
     if (dim == 0 || absent || values.size() == dim) return;
-    throw InputError(fmt::format("has {} numbers", values.size()), document.where(path),
+    throw InputError("has " + counted(values.size(), "number"), document.where(path),
                      dim == 1 ? "Give one number: the body has one dimension."
                               : fmt::format("Give {} numbers, one per dimension.", dim));
   }

@@ -1,4 +1,5 @@
 #include "base/yaml_copies_spec.hpp"
+#include "base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ void GridCopies::fields(Fields& f) {
   f.check(std::all_of(count.begin(), count.end(), is_whole), "count", "is not of whole numbers",
           "Give the number of copies along each axis.");
   f.check(count.size() == spacing.size(), "spacing",
-          fmt::format("has {} numbers, but count has {}", spacing.size(), count.size()),
+          fmt::format("has {}, but count has {}", counted(spacing.size(), "number"), count.size()),
           "Give both one number per dimension.");
   for (std::size_t axis = 0; axis < std::min(count.size(), spacing.size()); ++axis)
     f.check(count[axis] == 1.0 || spacing[axis] != 0.0, "spacing",

@@ -108,6 +108,13 @@ std::vector<std::string> known_measures(const MeasureScope& scope) {
   return names;
 }
 
+std::string nearest_measures(const std::string& measure, std::vector<std::string> known) {
+  std::ranges::stable_sort(
+      known, {}, [&measure](const std::string& name) { return edit_distance(measure, name); });
+  known.resize(std::min<std::size_t>(known.size(), 3));
+  return fmt::format("The nearest are: {}.", fmt::join(known, ", "));
+}
+
 void require_measure(const std::string& measure, const MeasureScope& scope) {
   const std::vector<std::string> known = known_measures(scope);
   if (contains(known, measure)) return;
@@ -126,14 +133,8 @@ void require_measure(const std::string& measure, const MeasureScope& scope) {
                     measure),
         "meta.expect",
         "Name output.steady_after, the time from which they count, or leave the expectation out.");
-  std::vector<std::string> near = known;
-  std::stable_sort(near.begin(), near.end(),
-                   [&measure](const std::string& a, const std::string& b) {
-                     return edit_distance(measure, a) < edit_distance(measure, b);
-                   });
-  near.resize(std::min<std::size_t>(near.size(), 3));
   throw InputError(fmt::format("there is no measure '{}'", measure), "meta.expect",
-                   fmt::format("The nearest are: {}.", fmt::join(near, ", ")));
+                   nearest_measures(measure, known));
 }
 
 void Measures::none(const std::string& name, const std::string& why) {

@@ -39,6 +39,9 @@ MeasureScope measure_scope(const RunStart& start, std::vector<std::string> exact
 /// Every measure that a run of this scope reports, sorted.
 std::vector<std::string> known_measures(const MeasureScope& scope);
 
+/// "The nearest are: a, b, c." of measures that there are.
+std::string nearest_measures(const std::string& measure, std::vector<std::string> known);
+
 /// Throws InputError naming the nearest known measures when there is none of this name.
 void require_measure(const std::string& measure, const MeasureScope& scope);
 

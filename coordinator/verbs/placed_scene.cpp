@@ -87,10 +87,10 @@ void validate_measures(const Scene& scene, std::span<const Description* const> b
   const std::vector<std::string>& of = scene.output.measures->of;
   for (std::size_t i = 0; i < of.size(); ++i)
     if (std::ranges::find(told, of[i]) == told.end())
-      throw InputError(
-          fmt::format("names '{}', which no body tells", of[i]),
-          document.where(fmt::format("output.measures.of[{}]", i)),
-          "Name one as summary.json of a run has it: body.NAME. and what it measures.");
+      throw InputError(fmt::format("names '{}', which no body tells", of[i]),
+                       document.where(fmt::format("output.measures.of[{}]", i)),
+                       told.empty() ? "Leave it out: no body of this scene tells measures."
+                                    : nearest_measures(of[i], told));
 }
 
 /// Of the fields that a scene wants, by body.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "abut.h"
+#include "base/counted.hpp"
 
 namespace {
 
@@ -68,7 +69,7 @@ void abut_numbers(abut_keys* keys, const char* name, const char* unit, double* t
   keys->fields.required(name, values, unit, name);
   const bool fits = values.size() == static_cast<std::size_t>(count);
   if (!fits && abut_has(keys, name) != 0)
-    abut_refuse(keys, name, fmt::format("has {} numbers", values.size()).c_str(),
+    abut_refuse(keys, name, ("has " + abut::counted(values.size(), "number")).c_str(),
                 fmt::format("Give {}.", count).c_str());
   keys->refused = keys->refused || !fits;
   for (int i = 0; i < count; ++i) to[i] = fits ? values[static_cast<std::size_t>(i)] : not_read;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 
@@ -58,7 +59,8 @@ void UserBody::require_whole() const {
     const abut_parts::State* const found = named(name);
     if (!other && (found == nullptr || found->count != values()))
       throw InputError(
-          fmt::format("has {} numbers, not {}", found != nullptr ? found->count : 0, values()),
+          fmt::format("has {}, not {}", counted(found != nullptr ? found->count : 0, "number"),
+                      values()),
           fmt::format("state {}", name), fmt::format("Or say {}().", function));
   };
   require_state("u", body_.displacement != nullptr, "displacement");

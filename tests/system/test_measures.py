@@ -103,7 +103,8 @@ class Measures(SystemTest):
         result = self.run_scene("--set", "output.measures.of=[body.left.gauge.strain.xx]")
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertIn("output.measures.of", result.stderr)
-        self.assertIn("names 'body.left.gauge.strain.xx', which no body tells", result.stderr)
+        self.assertIn("names 'body.left.gauge.strain.xx', which no body tells. "
+                      "The nearest are: body.left.gauge.stress.xx, ", result.stderr)
         self.assertFalse(self.out.exists())
 
 

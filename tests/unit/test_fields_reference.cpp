@@ -96,6 +96,8 @@ TEST(PartOfTheReference, AKeyThatIsNoneIsRefusedWithTheOneThatWasMeant) {
   EXPECT_EQ(refusal([&] { reference.part("bodies.left.all.steel.density.x"); }),
             "bodies.left.all.steel.density.x: is not a key of a scene. The key before it has none "
             "below.");
+  EXPECT_EQ(refusal([&] { reference.part("some"); }),
+            "some: is not a key of a scene. There is bodies.<name>.some.");
 }
 
 }  // namespace

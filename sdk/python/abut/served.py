@@ -104,7 +104,7 @@ class Served:
             given = values[name] if self.several else values
             value = np.array(given, float).ravel()
             if value.size != self.width(port):
-                raise InputError(f"has {value.size} numbers at port {name}, not "
+                raise InputError(f"has {value.size} number{'s' * (value.size != 1)} at port {name}, not "
                                  f"{self.width(port)}", what,
                                  f"Give {surface.count} points of {surface.dim}.")
             flat.append(value)
