@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "messaging/zmq_socket.hpp"
+
 namespace abut {
 
 namespace {
@@ -31,9 +33,26 @@ TimePoint BodyLiveness::last_sign() {
 }
 
 std::string BodyLiveness::loss(TimePoint since) {
+  const TimePoint now = std::chrono::steady_clock::now();
+  stood_still_ = std::chrono::duration_cast<Milliseconds>(now - std::max(since, asked_));
+  asked_ = now;
   const std::string what = loss_of_process(since);
   if (what.empty() || shares_.empty()) return what;
   return fmt::format("shares a process with {}, which {}", shares_, what);
+}
+
+/// Of a solver that believes its coordinator gone.
+std::string BodyLiveness::why_it_left() const {
+  const double silence = static_cast<double>(longest_silence.count()) / 1000.0;
+  if (stood_still_ >= longest_silence)
+    return fmt::format(
+        "as this process stood still for {:.0f} s: solvers leave a coordinator that answers "
+        "nothing for {:g} s",
+        static_cast<double>(stood_still_.count()) / 1000.0, silence);
+  return fmt::format(
+      "as solvers do whose connection ends (a frame far above the limit of {} bytes ends it, and "
+      "so does a coordinator that is stopped for {:g} s)",
+      limits_.frame_bytes, silence);
 }
 
 std::string BodyLiveness::loss_of_process(TimePoint since) {
@@ -42,8 +61,7 @@ std::string BodyLiveness::loss_of_process(TimePoint since) {
   if (linked_ != nullptr && !linked_->fault().empty()) return linked_->fault();
   if (child_ != nullptr && child_->ended(Milliseconds(0))) {
     // Code 3 is a solver that believes its coordinator gone: it was this end that hung up.
-    return child_->exited_with(3) ? child_->ending() + ", its connection having ended " + hint
-                                  : child_->ending();
+    return child_->exited_with(3) ? child_->ending() + ", " + why_it_left() : child_->ending();
   }
   if (hub_.disconnects(peer_, since) >= disconnects_of_the_living) {
     return fmt::format("lost its connection {} times ", disconnects_of_the_living) + hint;

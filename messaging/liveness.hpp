@@ -46,6 +46,7 @@ class BodyLiveness : public Liveness {
 
  private:
   std::string loss_of_process(TimePoint since);
+  std::string why_it_left() const;
 
   ZmqHub& hub_;
   int peer_;
@@ -54,6 +55,8 @@ class BodyLiveness : public Liveness {
   Limits limits_;
   Deadlines deadlines_;
   const LinkedBodies* linked_;
+  TimePoint asked_{};            // whoever waits asks again and again
+  Milliseconds stood_still_{0};  // before it was asked last
 };
 
 /// The solver's view of its coordinator.

@@ -25,10 +25,11 @@ void configure(zmq::socket_t& socket, const Limits& limits) {
   // Frames above the limit are refused by size and name; far above it the connection ends before
   // memory does.
   socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * limits.frame_bytes));
-  socket.set(zmq::sockopt::handshake_ivl, 5'000);       // [ms]
-  socket.set(zmq::sockopt::heartbeat_ivl, 2'000);       // [ms] answered by the peer's I/O thread,
-  socket.set(zmq::sockopt::heartbeat_timeout, 10'000);  // [ms] also while its body is solving
-  socket.set(zmq::sockopt::heartbeat_ttl, 10'000);      // [ms]
+  socket.set(zmq::sockopt::handshake_ivl, 5'000);  // [ms]
+  const int silence = static_cast<int>(longest_silence.count());
+  socket.set(zmq::sockopt::heartbeat_ivl, 2'000);        // [ms] answered by the peer's I/O thread,
+  socket.set(zmq::sockopt::heartbeat_timeout, silence);  // also while its body is solving
+  socket.set(zmq::sockopt::heartbeat_ttl, silence);
   socket.set(zmq::sockopt::tcp_keepalive, 1);
   socket.set(zmq::sockopt::ipv6, 0);
 }

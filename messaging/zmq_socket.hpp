@@ -13,6 +13,9 @@ namespace abut {
 
 // What both ends do with a socket.
 
+/// For so long an end may answer no heartbeat before the other one takes it for gone.
+inline constexpr Milliseconds longest_silence{10'000};
+
 /// Everything that libzmq would otherwise choose for us.
 void configure(zmq::socket_t& socket, const Limits& limits);
 /// Of a connection that so many bodies share; heeded by connections that begin later. One request
