@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* scene_file = "scene.resolved.yaml";  // written first, removed last;
 constexpr const char* summary_file = "summary.json";       // either tells of a run
+constexpr const char* folder_of_fields = "fields";
 constexpr const char* list_of_fields = "fields.pvd";
 constexpr const char* state_of_paraview = "fields.pvsm";
 constexpr const char* trace_file = "trace.json";
@@ -53,7 +54,7 @@ bool is_there(const fs::path& path) { return fs::exists(status_of(path)); }
 /// The states that fields.pvd of an earlier run lists: what that run wrote, and nothing else.
 std::vector<fs::path> listed_states(const fs::path& directory) {
   std::vector<fs::path> states;
-  if (!fs::is_directory(status_of(directory / "fields"))) return states;
+  if (!fs::is_directory(status_of(directory / folder_of_fields))) return states;
   std::ifstream file(directory / list_of_fields);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const std::regex state(R"re(file="(fields/[^"/]+\.vtu)")re");
@@ -149,6 +150,10 @@ void RunDirectory::refuse_what_stays(bool force) const {
                                 fs::is_symlink(status) ? " but a symbolic link" : ""));
     if (!holds_run) refuse(path_, fmt::format("holds {}, and no run that could own it", name));
   }
+  const fs::file_status fields = status_of(path_ / folder_of_fields);
+  if (fs::exists(fields) && !fs::is_directory(fields))
+    refuse(path_, fmt::format("holds {}, which is no folder of a run{}", folder_of_fields,
+                              fs::is_symlink(fields) ? " but a symbolic link" : ""));
 }
 
 void RunDirectory::clear() {
@@ -156,8 +161,8 @@ void RunDirectory::clear() {
   for (const fs::path& state : listed_states(path_)) {
     if (fs::is_regular_file(status_of(state))) fs::remove(state, error);
   }
-  if (fs::is_directory(status_of(path_ / "fields")))
-    fs::remove(path_ / "fields", error);  // stays where it holds something else
+  if (fs::is_directory(status_of(path_ / folder_of_fields)))
+    fs::remove(path_ / folder_of_fields, error);  // stays where it holds something else
   for (const char* name : run_files()) remove(name);
 }
 
