@@ -1,6 +1,7 @@
 #include "base/units.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,8 @@
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "base/unit_pattern.hpp"
 
 namespace abut {
 namespace {
@@ -138,6 +141,26 @@ std::optional<Unit> parse_unit(std::string_view text) {
     sign = text[end] == '/' ? -1 : 1;
     text.remove_prefix(end + 1);
   }
+}
+
+std::string unit_pattern(std::string_view si_unit) {
+  const std::optional<Unit> wanted = parse_unit(si_unit);
+  std::vector<std::string_view> begins, prefixed, plain, own, own_prefixed;
+  for (const auto& [prefix, exponent] : prefixes) begins.push_back(prefix);
+  for (const Symbol& symbol : symbols) {
+    if (symbol.word == "1") continue;  // no number has it alone
+    (symbol.prefixed ? prefixed : plain).push_back(symbol.word);
+    if (wanted && symbol.unit.dimension == wanted->dimension)
+      (symbol.prefixed ? own_prefixed : own).push_back(symbol.word);
+  }
+  const std::string prefix = fmt::format("(?:{})?", fmt::join(begins, "|"));
+  const std::string any =
+      fmt::format("(?:{}(?:{})|{})", prefix, fmt::join(prefixed, "|"), fmt::join(plain, "|"));
+  const std::string power = "\\^?-?[0-9]";
+  std::string text = fmt::format("{0}(?:{1})?(?: *[*/] *(?:1|{0}(?:{1})?))+|{0}{1}", any, power);
+  if (!own.empty()) text += fmt::format("|{}", fmt::join(own, "|"));
+  if (!own_prefixed.empty()) text += fmt::format("|{}(?:{})", prefix, fmt::join(own_prefixed, "|"));
+  return "(?:" + text + ")";
 }
 
 std::optional<Quantity> split_quantity(std::string_view text) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/assert.hpp"
+#include "base/unit_pattern.hpp"
 
 namespace abut {
 namespace {
@@ -43,7 +44,8 @@ Json number_of(const KeyNode& key) {
   return {{"anyOf",
            {number(key.rule),
             {{"type", "string"},
-             {"pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? ?[A-Za-z\u00b5\u03bc]"}}}}};
+             {"pattern",
+              fmt::format("^ *[-+]?[0-9.]+([eE][-+]?[0-9]+)? *{} *$", unit_pattern(key.unit))}}}}};
 }
 
 Json preset_names(const std::vector<Preset>& presets) {
@@ -224,6 +226,11 @@ std::string json_schema(const Reference& reference) {
   ABUT_ASSERT(bodies != nullptr);
   Definitions definitions;
   Json whole = Schemas(definitions, false).map_of(scene.keys, false);
+  const std::string unit =
+      fmt::format("(?:{}|{}|{})", unit_pattern("m"), unit_pattern("kg"), unit_pattern("s"));
+  Json& units = whole["properties"]["units"];
+  units["type"] = "string";
+  units["pattern"] = fmt::format("^ *(?:SI|{0}(?:[ ,]+{0}){{2}})[ ,]*$", unit);
   Json& entry = whole["properties"]["bodies"];
   entry = {{"type", "object"},
            {"description", bodies->help},

@@ -105,6 +105,18 @@ class Schema(SystemTest):
                 self.assertEqual(not self.faults(scene), row.name in ACROSS)
         self.assertGreater(refused, 20, "rows of this kind are found")
 
+    def test_units_are_those_of_the_quantity(self):
+        text = (ROOT / "configs" / "two_bars.yaml").read_text(encoding="utf-8")
+        for setting, taken in (
+                ("time.end=150 us", True), ("time.end=1.5e-4s", True), ("time.end=0.1 m/m*s", True),
+                ("time.end=150 kg", False), ("time.end=150 parsec", False),
+                ("time.end=150 m/parsec", False), ("units=SI", True), ("units=mm t s", True),
+                ("units=ms, mm, kg", True), ("units=furlong", False), ("units=mm t", False)):
+            scene = read(text)
+            put(scene, setting)
+            with self.subTest(setting):
+                self.assertEqual(self.faults(scene) == [], taken)
+
     def test_refused_files_are_refused_by_their_form(self):
         for name in ("missing_key", "missing_section", "unknown_key", "unknown_section",
                      "not_a_scene", "several_errors", "empty"):
