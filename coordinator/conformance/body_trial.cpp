@@ -17,7 +17,6 @@ namespace abut {
 namespace {
 
 constexpr int steps_of_a_window = 4;
-constexpr double light = 1.0e-4;          // of the size of a port, that forces move it
 constexpr double size_of_a_point = 0.01;  // [m] of ports that have no size
 
 bool same_bits(double one, double other) {
@@ -94,18 +93,19 @@ double size_of_port(const PortGeometry& surface) {
 }
 
 double BodyTrial::light_force(int port) {
-  double& force = light_[index(port)];
-  if (force >= 0.0) return force;
-  force = 0.0;
+  double& known = light_[index(port)];
+  if (known < 0.0) known = find_light_force(port);
+  return known;
+}
+
+double BodyTrial::find_light_force(int port) {
   const Description& body = about();
   const PortGeometry& surface = body.ports[index(port)].geometry;
   const bool mark = surface.dim > 1 && surface.facets.empty();  // nothing can touch it
-  if (!body.can.force || std::isinf(body.mass) || mark) return force;
-  const double wanted = light * size_of_port(surface);
-  if (!body.can.kernel) {  // as if all mass followed
-    force = body.mass * wanted / (length_ * length_) / surface.count();
-    return force;
-  }
+  if (!body.can.force || std::isinf(body.mass) || mark) return 0.0;
+  const double wanted = light_way * size_of_port(surface);
+  if (!body.can.kernel)  // as if all mass followed
+    return body.mass * wanted / (length_ * length_) / surface.count();
   const std::vector<double> ones(surface.points.size(), 1.0);
   const int count = std::max(1, static_cast<int>(std::lround(length_ / step_)));
   const PortKernel kernel = body_.probe({port, ones, step_, count});
@@ -114,19 +114,32 @@ double BodyTrial::light_force(int port) {
     moved[k % moved.size()] += kernel.displacement[k];
   double most = 0.0;
   for (const double each : moved) most = std::max(most, std::abs(each));
-  if (most > 0.0) force = wanted / most;
-  return force;
+  return most > 0.0 ? wanted / most : 0.0;
 }
 
 Push BodyTrial::push(int port, int axis, double length, double force) const {
   const PortGeometry& surface = about().ports[index(port)].geometry;
-  Push push{port, Waveform(static_cast<int>(surface.points.size()))};
+  std::vector<double> forces(surface.points.size(), 0.0);
+  for (std::size_t k = index(axis); k < forces.size(); k += index(surface.dim)) forces[k] = force;
+  return push(port, length, forces);
+}
+
+Push BodyTrial::push(int port, double length, const std::vector<double>& forces) const {
+  Push push{port, Waveform(static_cast<int>(forces.size()))};
   push.force.support = ForceSupport::step;
   push.force.time = {now_, now_ + length};
-  push.force.f.assign(2 * surface.points.size(), 0.0);
-  for (std::size_t k = index(axis); k < push.force.f.size(); k += index(surface.dim))
-    push.force.f[k] = force;
+  push.force.f = forces;
+  push.force.f.insert(push.force.f.end(), forces.begin(), forces.end());
   return push;
+}
+
+std::string why_no_force(BodyTrial& trial) {
+  const Description& body = trial.about();
+  if (!body.can.force) return "the body takes no forces";
+  if (std::isinf(body.mass)) return "nothing moves the body";
+  for (int p = 0; p < static_cast<int>(body.ports.size()); ++p)
+    if (trial.light_force(p) > 0.0) return "";
+  return not_moved;
 }
 
 std::string first_difference(const Response& one, const Response& other, const Description& body) {

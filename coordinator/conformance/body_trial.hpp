@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -52,14 +53,30 @@ class BodyTrial {
   double light_force(int port);
   /// That force along an axis over a window that begins now.
   Push push(int port, int axis, double length, double force) const;
+  /// Of forces [N] on every value of a port, over a window that begins now.
+  Push push(int port, double length, const std::vector<double>& forces) const;
 
  private:
+  double find_light_force(int port);
+
   Subdomain& body_;
   double now_, saved_at_ = 0.0;
   std::int64_t index_ = 0, saved_index_ = 0;
   double step_, length_;
   std::vector<double> light_;  // by port; negative: not known yet
 };
+
+/// Of a number, of its size.
+inline constexpr double one_rounding = std::numeric_limits<double>::epsilon();
+
+/// Of the size of a port, by which light forces move it in a window.
+inline constexpr double light_way = 1.0e-4;
+
+/// What clauses say of a body whose ports no force moves.
+inline constexpr const char* not_moved = "no force moves its ports";
+
+/// Why no force can be tried at any port; empty: it can.
+std::string why_no_force(BodyTrial& trial);
 
 /// [m] a typical size of a port: distance of its mesh's nodes, or its extent.
 double size_of_port(const PortGeometry& surface);

@@ -23,6 +23,8 @@ struct Clause {
 std::span<const Clause> clauses_of_windows();
 /// What forces must do.
 std::span<const Clause> clauses_of_forces();
+/// What motion must be: velocities, and points that forces act on.
+std::span<const Clause> clauses_of_motion();
 
 struct Verdict {
   std::string clause, says;

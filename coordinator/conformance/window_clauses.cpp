@@ -95,15 +95,15 @@ Place looks(const std::vector<Place>& at) {
 
 /// VTK's kinds of cells that fill space in so many dimensions.
 bool fills(int type, int dim) {
+  static const std::set<int> line{3, 4, 21, 35};
   static const std::set<int> flat{5, 7, 8, 9, 22, 23, 28, 34};
   static const std::set<int> solid{10, 11, 12, 13, 14, 24, 25, 26, 27, 29, 32};
-  return dim == 2 ? flat.contains(type) : solid.contains(type);
+  return (dim == 1 ? line : dim == 2 ? flat : solid).contains(type);
 }
 
 std::string orientation(BodyTrial& trial) {
   const Description& body = trial.about();
-  if (body.dim == 1) return "points have normals, which kernels are held against";
-  if (body.fields.empty()) return "the body tells no grid to hold its facets against";
+  if (body.fields.empty()) return "the body tells no grid to hold its facets or points against";
   const Grid grid = trial.body().grid();
   if (std::none_of(grid.types.begin(), grid.types.end(),
                    [&](int type) { return fills(type, body.dim); }))
@@ -112,21 +112,27 @@ std::string orientation(BodyTrial& trial) {
   bool found = false;
   for (const Port& port : body.ports) {
     const PortGeometry& surface = port.geometry;
-    for (std::size_t f = 0; f + 1 < surface.offsets.size(); ++f) {
-      const std::vector<Place> at = places_of(surface, f);
+    const std::size_t count = body.dim == 1 ? index(surface.count())
+                                            : std::max<std::size_t>(surface.offsets.size(), 1) - 1;
+    for (std::size_t f = 0; f < count; ++f) {
+      const std::vector<Place> at =
+          body.dim == 1 ? std::vector{Place{surface.points[f], 0.0, 0.0}} : places_of(surface, f);
       const std::optional<Place> middle = cells.middle_behind(at);
       if (!middle) continue;
       found = true;
-      if (dot(looks(at), *middle - at[0]) < 0.0) continue;
+      const Place out = body.dim == 1 ? Place{surface.normals[f], 0.0, 0.0} : looks(at);
+      if (dot(out, *middle - at[0]) < 0.0) continue;
       throw BrokenClause(
-          fmt::format("facet {} of port {} looks into the body: the cell of its grid that has "
-                      "these points lies before it",
-                      f, port.name),
-          "In the plane the body lies to the left of who walks along a facet; in space points turn "
-          "counterclockwise for who looks at the body from outside.");
+          fmt::format("{} {} of port {} looks into the body: the cell of its grid that has it lies "
+                      "before it",
+                      body.dim == 1 ? "point" : "facet", f, port.name),
+          "In one dimension the normal of a point leads out of the body; in the plane the body "
+          "lies "
+          "to the left of who walks along a facet; in space points turn counterclockwise for who "
+          "looks at the body from outside.");
     }
   }
-  return found ? "" : "no cell of the body's grid has the points of a facet";
+  return found ? "" : "no cell of the body's grid has the points of a port";
 }
 
 /// Ends of windows, times and sizes: the reader of replies refuses what is wrong.
@@ -327,7 +333,7 @@ std::string boxes(BodyTrial& trial) {
 }
 
 constexpr Clause clauses_on_windows[] = {
-    {"orientation", "facets look outward", orientation},
+    {"orientation", "facets, and points of lines, look outward", orientation},
     {"ends", "a window ends on its end, in substeps that the description tells", ends},
     {"parts", "two windows are one of twice the length", parts},
     {"no length", "a window of no length advances nothing and tells the state", no_length},

@@ -45,35 +45,24 @@ Document document_of(const ConformanceCommand& command) {
       command.overrides);
 }
 
-/// A new process goes on from what the body kept, to the same bits.
-Verdict kept(BodyTrial& trial, const Scene& scene, const Document& document, std::size_t b,
-             const std::atomic<bool>& interrupted) {
-  Verdict verdict{"checkpoint", "a new process goes on from a checkpoint to the same bits"};
+/// Why a new process goes on otherwise from what the body kept; empty: to the same bits.
+std::string kept(BodyTrial& trial, const Scene& scene, const Document& document, std::size_t b,
+                 const std::atomic<bool>& interrupted) {
   const auto somebody_elses = [](const auto& body) {
     return std::holds_alternative<ConnectLaunch>(body.second.launch);
   };
-  if (std::ranges::any_of(scene.bodies, somebody_elses)) {
-    verdict.words = "somebody else starts the process";
-    return verdict;
-  }
-  try {
-    const std::vector<std::byte> bytes = trial.body().checkpoint();
-    const double from = trial.now();
-    const Response one = trial.window(trial.length());
-    const Placement other = place(scene, document, false, interrupted);
-    BodyTrial again(*other.bodies[b], from, scene.time.window);
-    other.bodies[b]->resume(bytes);
-    const std::string difference =
-        first_difference(one, again.window(again.length()), trial.about());
-    other.launch->finish();
-    if (difference.empty()) return verdict;
-    verdict.words = "a window after it ends otherwise: " + difference +
-                    ". A checkpoint holds all that a step changes.";
-  } catch (const RunError& error) {
-    verdict.words = error.what();
-  }
-  verdict.kept = false;
-  return verdict;
+  if (std::ranges::any_of(scene.bodies, somebody_elses)) return "somebody else starts the process";
+  const std::vector<std::byte> bytes = trial.body().checkpoint();
+  const double from = trial.now();
+  const Response one = trial.window(trial.length());
+  const Placement other = place(scene, document, false, interrupted);
+  BodyTrial again(*other.bodies[b], from, scene.time.window);
+  other.bodies[b]->resume(bytes);
+  const std::string difference = first_difference(one, again.window(again.length()), trial.about());
+  other.launch->finish();
+  if (difference.empty()) return "";
+  throw BrokenClause("a window after it ends otherwise: " + difference,
+                     "A checkpoint holds all that a step changes.");
 }
 
 /// The program of a body that this one starts; empty: somebody else does.
@@ -101,9 +90,13 @@ void hold_wire(BodyTrial& trial, const Scene& scene, const Document& document, s
                             "bodies." + name, entry.context},
                            Milliseconds(std::lround(1.0e3 * scene.network.request_deadline))};
   WireTrial::Pushed pushed{scene.time.begin, trial.step(), 4, 0, 0.0};
-  for (int p = 0; p < static_cast<int>(trial.about().ports.size()) && pushed.force == 0.0; ++p) {
-    pushed.port = p;
-    pushed.force = trial.light_force(p);
+  try {
+    for (int p = 0; p < static_cast<int>(trial.about().ports.size()) && pushed.force == 0.0; ++p) {
+      pushed.port = p;
+      pushed.force = trial.light_force(p);
+    }
+  } catch (const RunError&) {
+    pushed.force = 0.0;  // a body that is gone, or answers no probe: its clauses have said so
   }
   hold_wire(solver, pushed, wanted, verdicts);
 }
@@ -124,7 +117,8 @@ bool tell(const Description& body, const std::vector<Verdict>& verdicts) {
 void require_known(const Wanted& wanted) {
   std::vector<std::string> names = names_of_wire_clauses();
   names.emplace_back("checkpoint");
-  for (const std::span<const Clause> clauses : {clauses_of_windows(), clauses_of_forces()})
+  for (const std::span<const Clause> clauses :
+       {clauses_of_windows(), clauses_of_forces(), clauses_of_motion()})
     for (const Clause& clause : clauses) names.emplace_back(clause.name);
   for (const std::string& name : wanted)
     if (!wants(names, name))
@@ -165,8 +159,11 @@ int conformance_verb(const ConformanceCommand& command) {
     std::vector<Verdict> verdicts;
     hold(clauses_of_windows(), command.only, trial, verdicts);
     hold(clauses_of_forces(), command.only, trial, verdicts);
+    hold(clauses_of_motion(), command.only, trial, verdicts);
     if (wants(command.only, "checkpoint"))
-      verdicts.push_back(kept(trial, scene, document, b, interrupts.asked));
+      verdicts.push_back(judged("checkpoint",
+                                "a new process goes on from a checkpoint to the same bits",
+                                [&] { return kept(trial, scene, document, b, interrupts.asked); }));
     hold_wire(trial, scene, document, b, command.only, programs, verdicts);
     all = tell(body, verdicts) && all;
   }
