@@ -22,6 +22,13 @@ BODIES = {
     "takes_long_steps": {"ends", "kernel"},  # a kernel is told at steps of its description
     "slows_down_by_windows": {"parts"},
     "moves_in_no_time": {"no length"},
+    "ignores_the_length_of_steps": {"motion", "momentum"},
+    "ignores_it_and_tells_what_it_would_be": {"motion", "momentum"},
+    "tells_speeds_backwards": {"motion"},
+    "tells_no_speeds": {"motion"},
+    "tells_points_in_another_order": {"points", "work"},
+    "presses_on_neighbours": {"points", "work"},
+    "presses_on_neighbours_and_is_damped": {"points"},  # no energy tells it
     "remembers": {"restore"},
     "has_one_hash": {"hash"},
     "tells_small_boxes": {"boxes"},
@@ -32,6 +39,7 @@ BODIES = {
     "takes_all_forces_as_nodal": {"momentum", "kernel"},  # which is of a force by steps
     "tells_double_work": {"work"},
     "tells_half_the_energy": {"work"},
+    "tells_no_stored_energy": {"work"},
     "has_a_soft_kernel": {"kernel"},
     "moves_by_probes": {"kernel"},
     "keeps_half": {"checkpoint"},
@@ -50,8 +58,9 @@ SOLVERS = {
     "overlooks_refusal": {"refused"},
     "overlooks_loss": {"lost"},
 }
+LINES = {"looks_inward_on_a_line": {"orientation"}}
 OF_BODIES = ["orientation", "ends", "parts", "no length", "restore", "hash", "boxes", "speed",
-             "momentum", "work", "kernel", "checkpoint"]
+             "momentum", "kernel", "work", "motion", "points", "checkpoint"]
 OF_SOLVERS = sorted(set().union(*SOLVERS.values()))
 
 
@@ -88,6 +97,24 @@ class Wrong(ConformanceTest):
 
     def test_a_wrong_body_breaks_the_clause_that_is_meant_for_it(self):
         self.hold(BODIES, OF_BODIES)
+
+    def test_a_wrong_body_in_one_dimension_breaks_the_clause_that_is_meant_for_it(self):
+        self.hold(LINES, ["orientation", "momentum"])
+        code, broken, kept, said = self.tried(WRONG, "--only", "orientation",
+                                              wrong="nothing_on_a_line")
+        self.assertEqual((code, broken, kept), (0, set(), {"orientation"}), said)
+
+    def test_a_body_that_fails_has_a_table_all_the_same(self):
+        for wrong, kept_before in (("is_lost_in_numbers", {"ends", "no length"}),
+                                   ("converges_never", {"orientation"})):
+            with self.subTest(wrong):
+                code, broken, kept, said = self.tried(WRONG, "--only", ",".join(OF_BODIES),
+                                                      wrong=wrong)
+                self.assertEqual(code, 1, said)
+                self.assertLessEqual(kept_before, kept, said)
+                self.assertLessEqual({"restore", "motion", "checkpoint"}, broken, said)
+                self.assertEqual(said.count("kept ") + said.count("BROKEN ") +
+                                 said.count("not asked "), len(OF_BODIES), said)
 
     def test_a_wrong_solver_breaks_the_clause_that_is_meant_for_it(self):
         self.hold(SOLVERS, OF_SOLVERS)

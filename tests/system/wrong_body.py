@@ -8,8 +8,11 @@ import time
 
 import numpy as np
 
-from abut import Energy, Surface, answers, probing, served, serve, server, window
+from abut import Body, Energy, NotConverged, Point, Surface
+from abut import answers, probing, served, serve, server, window
 from abut.v1 import subdomain_pb2 as pb
+
+STEPS_THAT_END_WELL = 40  # of a body that is lost afterwards: some clauses are kept before
 
 
 def plate():
@@ -49,6 +52,31 @@ class Wrong(plate()):
         points = self.points[self.rim]
         facets = [(k + 1, k) if turned else (k, k + 1) for k in range(self.cells[0])]
         return Surface(points[:self.cells[0] + 1], facets)
+
+
+class Line(Body):
+    """A mass in one dimension whose grid says where it lies: right of its point."""
+
+    state = ("u", "v")
+    conserves = linear = True
+    mass, substep, u, v = 0.2, 4.0e-6, 0.0, 0.0
+
+    def __init__(self, _):
+        pass
+
+    def surface(self):
+        return Point(0.0, normal=1.0 if WRONG == "looks_inward_on_a_line" else -1.0)
+
+    def step(self, dt, force):
+        before = self.v
+        self.v += dt * force / self.mass
+        self.u += dt * (before + self.v) / 2.0
+
+    def grid(self):
+        return np.array([[0.0], [1.0]]), [(3, (0, 1))]  # 3: VTK's line
+
+    def node_fields(self):
+        return {"height": np.zeros((2, 1))}
 
 
 def replace(owner, name: str, make):
@@ -104,6 +132,60 @@ def moves_in_no_time(body):
             right(self, reply)
         return moved
     replace(window.Window, "advance", advance)
+
+
+def ignores_the_length_of_steps(body):
+    body.step = lambda _, force: Wrong.step(body, body.substep, force)
+
+
+def ignores_it_and_tells_what_it_would_be(body):
+    """Its velocity is way over the time that was asked for."""
+    body.state, body.gone = (*body.state, "gone"), 0.0 * body.v
+
+    def step(dt, force):
+        before = body.u
+        Wrong.step(body, body.substep, force)
+        body.gone = (body.u - before) / dt
+    body.step = step
+    body.velocity = lambda: body.gone[body.rim]
+
+
+def tells_speeds_backwards(body):
+    body.velocity = lambda: -body.v[body.rim]
+
+
+def tells_no_speeds(body):
+    body.velocity = lambda: 0.0 * body.v[body.rim]
+
+
+def tells_points_in_another_order(body):
+    body.displacement = lambda: body.u[body.rim][::-1]
+    body.velocity = lambda: body.v[body.rim][::-1]
+
+
+def presses_on_neighbours(body):
+    body.step = lambda dt, force: Wrong.step(body, dt, np.roll(force, 1, axis=0))
+
+
+def presses_on_neighbours_and_is_damped(body):
+    """It does not conserve: no energy tells it."""
+    body.conserves = False
+    presses_on_neighbours(body)
+
+
+def is_lost_in_numbers(body):
+    def step(dt, force):
+        body.used += 1
+        Wrong.step(body, dt, force)
+        if body.used > STEPS_THAT_END_WELL:
+            body.u = body.u * np.nan
+    body.step = step
+
+
+def converges_never(body):
+    def step(*_):
+        raise NotConverged("no step converges")
+    body.step = step
 
 
 def remembers(body):
@@ -171,6 +253,10 @@ def tells_double_work(body):
 
 def tells_half_the_energy(body):
     body.energy = lambda: Energy(0.5 * Wrong.energy(body).kinetic, 0.5 * Wrong.energy(body).stored)
+
+
+def tells_no_stored_energy(body):
+    body.energy = lambda: Energy(Wrong.energy(body).kinetic)
 
 
 def has_a_soft_kernel(body):
@@ -304,11 +390,23 @@ def nothing(_):
     pass
 
 
+def looks_inward_on_a_line(_):
+    """Of Line, which knows."""
+
+
+def nothing_on_a_line(_):
+    """Of Line."""
+
+
 BODIES = {each.__name__: each for each in (
-    ends_early, takes_long_steps, looks_inward, slows_down_by_windows, moves_in_no_time, remembers,
+    ends_early, takes_long_steps, looks_inward, slows_down_by_windows, moves_in_no_time,
+    ignores_the_length_of_steps, ignores_it_and_tells_what_it_would_be, tells_speeds_backwards,
+    tells_no_speeds, tells_points_in_another_order, presses_on_neighbours,
+    presses_on_neighbours_and_is_damped, is_lost_in_numbers, converges_never, remembers,
     has_one_hash, tells_small_boxes, bounds_too_low, tells_small_velocities, loses_momentum,
     takes_one_partner, takes_all_forces_as_nodal, tells_double_work, tells_half_the_energy,
-    has_a_soft_kernel, moves_by_probes, keeps_half)}
+    tells_no_stored_energy, has_a_soft_kernel, moves_by_probes, keeps_half)}
+LINES = {each.__name__: each for each in (looks_inward_on_a_line, nothing_on_a_line)}
 SOLVERS = {each.__name__: each for each in (
     has_a_fixed_session, reads_damaged_frames, reads_all_sessions, executes_again, overlooks_gaps,
     saves_before_it_restores, answers_anything, takes_anything, is_silent, stays,
@@ -317,7 +415,7 @@ WRONG = os.environ["WRONG_BODY"]
 
 
 if __name__ == "__main__":
-    if WRONG not in BODIES | SOLVERS | {"nothing": nothing}:
+    if WRONG not in BODIES | LINES | SOLVERS | {"nothing": nothing}:
         raise SystemExit(f"nothing is called {WRONG}")
     SOLVERS.get(WRONG, lambda: None)()
-    serve(Wrong)
+    serve(Line if WRONG in LINES else Wrong)
