@@ -104,7 +104,8 @@ class Served:
             given = values[name] if self.several else values
             value = np.array(given, float).ravel()
             if value.size != self.width(port):
-                raise InputError(f"has {value.size} number{'s' * (value.size != 1)} at port {name}, not "
+                numbers = "1 number" if value.size == 1 else f"{value.size} numbers"
+                raise InputError(f"has {numbers} at port {name}, not "
                                  f"{self.width(port)}", what,
                                  f"Give {surface.count} points of {surface.dim}.")
             flat.append(value)
