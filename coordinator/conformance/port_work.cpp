@@ -27,7 +27,9 @@ struct Ways {
 
 /// Along the first substeps of a trace that begins where `before` ends. Under forces of instants
 /// (NODAL) a surface without mass gives way at once when a force begins, which takes half the force
-/// on the mean: before the trace begins, or in its first substep, as an unknown part of that.
+/// on the mean: before the trace begins, or in its first substep, as an unknown part of that. Under
+/// forces of steps what goes by velocities of steps' ends is half of the last step ahead of its
+/// energy.
 Ways force_times_way(const Waveform& before, const Waveform& trace,
                      const std::vector<double>& force, std::size_t substeps) {
   const std::size_t width = index(trace.width);
@@ -39,6 +41,7 @@ Ways force_times_way(const Waveform& before, const Waveform& trace,
       const double way = trace.u[i * width + k] - trace.u[(i - 1) * width + k];
       ways.add((levels && i == 1 ? 0.75 : 1.0) * force[k], way);
       if (levels && i == 1) ways.open += std::abs(0.25 * force[k] * way);
+      if (!levels && i == substeps) ways.open += std::abs(0.5 * force[k] * way);
     }
   }
   return ways;
