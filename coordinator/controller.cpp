@@ -173,8 +173,12 @@ void Controller::want_opening_accelerations(bool wanted) {
 /// Records have told of the start as the scene gives it.
 void Controller::unite_start() {
   std::vector<UnlikeStart> unlike;
+  start_lost_ = kinetic_energies();
   if (std::optional<Failed> failed = unite_velocities(joints_, clock_.time(), bodies_, unlike))
     return fail(failed->time, failed->detail);
+  const std::vector<double> after = kinetic_energies();
+  for (std::size_t b = 0; b < after.size(); ++b) start_lost_[b] -= after[b];
+  tell_lost_at_start();
   for (const UnlikeStart& start : unlike)
     narrator_.warning(clock_.time(), start.joint->name,
                       fmt::format("velocities of its sides differ by {:.3g} m/s at the start, and "

@@ -102,6 +102,8 @@ class Controller {
   void start();
   void want_opening_accelerations(bool wanted);
   void unite_start();
+  std::vector<double> kinetic_energies() const;
+  void tell_lost_at_start();
   bool running() const;
   bool goes_on() const;
   void pause();
@@ -177,6 +179,7 @@ class Controller {
   Roles roles_;
   ContactEvents events_;
   EnergyGuard guard_;
+  std::vector<double> start_lost_;  // [J] by body, where ties made velocities one
   OverlapSearch overlaps_;
   PassiveWay passive_;
   CrossingWatch crossing_;

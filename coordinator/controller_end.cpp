@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,27 @@ void Controller::judge(int body) {
   if (end_.status == "completed" && !why.empty()) fail(clock_.time(), why);
 }
 
+/// [J] by body, by its last record.
+std::vector<double> Controller::kinetic_energies() const {
+  std::vector<double> all;
+  for (const Response& response : bodies_.responses())
+    all.push_back(response.records.empty() ? 0.0 : response.records.back().energy.kinetic);
+  return all;
+}
+
+/// What makes velocities of tied surfaces one [M.122] is none of the bodies' steps.
+void Controller::tell_lost_at_start() {
+  const double lost = std::accumulate(start_lost_.begin(), start_lost_.end(), 0.0);
+  if (!(lost > 0.01 * guard_.most())) return;
+  narrator_.warning(
+      clock_.time(), "ties",
+      fmt::format(
+          "velocities of tied surfaces differ at the start, and making them one took {:.3g} "
+          "J, {:.2g} % of what there was in motion, as a blow does after which bodies "
+          "stick; give both sides the same velocities where they are tied",
+          lost, 100.0 * lost / guard_.most()));
+}
+
 /// What bodies have lost in steps of their own, and contact between them, beside friction and what
 /// the passive way has given up.
 void Controller::tell_losses() {
@@ -53,8 +75,9 @@ void Controller::tell_losses() {
     const Description& body = bodies_.describe(b);
     if (!std::isfinite(body.mass)) continue;  // what drives it works through it
     const double passive = index(b) < taken.size() ? taken[index(b)] : 0.0;
-    const double own = -guard_.unexplained(b) - passive;
-    lost -= own;
+    const double at_start = index(b) < start_lost_.size() ? start_lost_[index(b)] : 0.0;
+    const double own = -guard_.unexplained(b) - passive - at_start;
+    lost -= own + at_start;
     if (body.step > bodies_.describe(coarsest).step) coarsest = b;
     if (!(own > notable)) continue;
     narrator_.warning(
@@ -69,11 +92,12 @@ void Controller::tell_losses() {
   const bool tied = std::ranges::any_of(joints_, &Joint::tied);
   narrator_.warning(
       clock_.time(), name,
-      fmt::format("{} took {:.3g} J, {:.2g} % of the most there was in motion, "
-                  "beside friction: {} short against the steps, of which those of "
-                  "'{}' are the longest; smaller ones take less",
-                  tied ? "contact, and ties of unlike steps," : "contact", lost,
-                  100.0 * lost / guard_.most(), tied ? "what they pass on is" : "it is", name));
+      fmt::format(
+          "{} took {:.3g} J, {:.2g} % of the most there was in motion, "
+          "beside friction: {} short against the steps, of which those of "
+          "'{}' are the longest; smaller ones take less",
+          tied ? "contact, ties of unlike steps, and rims of ties that may touch," : "contact",
+          lost, 100.0 * lost / guard_.most(), tied ? "what they pass on is" : "it is", name));
 }
 
 void Controller::look_for_overlaps() {

@@ -255,10 +255,8 @@ bool Controller::leave_apart() {
 bool Controller::rejoin() {
   if (!passive_.joins()) return true;
   const auto kinetic = [this] {
-    double sum = 0.0;
-    for (const Response& response : bodies_.responses())
-      for (const BodyRecord& record : response.records) sum += record.energy.kinetic;
-    return sum;
+    const std::vector<double> all = kinetic_energies();
+    return std::accumulate(all.begin(), all.end(), 0.0);
   };
   prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
   waiting_.left = longest_wait;

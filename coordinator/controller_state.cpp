@@ -81,6 +81,7 @@ void Controller::state(Archive& archive) {
 /// anew is not listed.
 void Controller::memory(Archive& archive) {
   guard_.state(archive);
+  archive.field("start_lost", start_lost_);
   bodies_.state(archive);
   whole(archive, "flight_limit", flight_.limit);
   archive.field("grounded", flight_.grounded);

@@ -24,11 +24,11 @@ void Controller::release_swapped(const std::vector<Role>& roles) {
     Joint& joint = joints_[j];
     if (!is_swapped(joint)) continue;
     const auto [one, other] = joint.contact.rubbed;
-    const char* state = joint.tied()                             ? nullptr
-                        : joint.pressing()                       ? "presses"
-                        : joint.contact.impulse != 0.0           ? "is owed an impulse"
-                        : std::max(one, other) > 0.0             ? "has rubbed"
-                                                                 : nullptr;
+    const char* state = joint.tied()                   ? nullptr
+                        : joint.pressing()             ? "presses"
+                        : joint.contact.impulse != 0.0 ? "is owed an impulse"
+                        : std::max(one, other) > 0.0   ? "has rubbed"
+                                                       : nullptr;
     if (state != nullptr)
       throw RunError(fmt::format("{} where a stage begins in which one of its bodies has another "
                                  "model or mesh",
@@ -47,8 +47,9 @@ void Controller::tell_swaps() {
     if (!handed_[b]) continue;
     const int body = static_cast<int>(b);
     const Description& now = bodies_.describe(body);
-    Swap swap{clock_.time(), now.name, handed_[b]->model, now.model, {handed_[b]->mass, now.mass},
-              handed_[b]->record, record(body)};
+    Swap swap{
+        clock_.time(),      now.name,    handed_[b]->model, now.model, {handed_[b]->mass, now.mass},
+        handed_[b]->record, record(body)};
     narrator_.swap(swap);
   }
 }

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.hpp"
 #include "base/index.hpp"
 
 namespace abut {
@@ -254,7 +255,7 @@ class AbaqusParser {
 
   Picked generated(const Fields& fields, std::int32_t instance) const {
     if (fields.size() < 2 || fields.size() > 3)
-      file_.refuse(fmt::format("has {} numbers in a line of GENERATE", fields.size()),
+      file_.refuse(fmt::format("has {} in a line of GENERATE", counted(fields.size(), "number")),
                    "Write FIRST, LAST, STEP.");
     Picked range;
     range.first = file_.integer(fields[0], "the first number");

@@ -1,4 +1,5 @@
 #include "subdomain_solver/make/body_spec.hpp"
+#include "base/counted.hpp"
 #include "base/index.hpp"
 
 #include <algorithm>
@@ -122,14 +123,14 @@ void RigidToolSpec::fields(Fields& f) {
   f.check(dimension > 1, "dimension", "is 1, but a tool has a surface",
           "Use rigid_wall for bars, or give dimension 2 or 3.");
   f.check(way.empty() || way.size() == index(dimension), "way",
-          fmt::format("has {} expressions", way.size()),
+          "has " + counted(way.size(), "expression"),
           fmt::format("Give {} expressions, one per dimension.", dimension));
   f.check(!turn || turn->about.empty() || turn->about.size() == index(dimension), "turn.about",
-          fmt::format("has {} numbers", turn ? turn->about.size() : 0),
+          "has " + counted(turn ? turn->about.size() : 0, "number"),
           fmt::format("Give {} numbers, one per dimension.", dimension));
   f.check(!turn || dimension != 3 || turn->axis.size() == 3, "turn.axis",
           turn && turn->axis.empty() ? "is missing"
-                                     : fmt::format("has {} numbers", turn ? turn->axis.size() : 0),
+                                     : "has " + counted(turn ? turn->axis.size() : 0, "number"),
           "Give the three numbers of a direction, for example [0, 0, 1].");
   const auto is_zero = [](double x) { return x == 0.0; };
   f.check(!turn || dimension != 3 || !std::ranges::all_of(turn->axis, is_zero), "turn.axis",
@@ -408,7 +409,7 @@ void BodySpec::check_dimensions(Fields& f) const {
                                        : fmt::format("Give {} numbers, one per dimension.", dim);
   auto check = [&](const std::vector<double>& list, const char* key) {
     const bool absent = list.size() == 1 && list[0] == 0.0;  // as when left out
-    f.check(list.size() == dim || absent, key, fmt::format("has {} numbers", list.size()), numbers);
+    f.check(list.size() == dim || absent, key, "has " + counted(list.size(), "number"), numbers);
   };
   check(initial.position, "initial.position");
   check(initial.velocity, "initial.velocity");

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "base/count.hpp"
+#include "base/counted.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/fe/abaqus_file.hpp"
 #include "subdomain_solver/fe/exodus_file.hpp"
@@ -173,7 +174,7 @@ void name_points(const BodySpec& spec, const Place& place, Mesh& mesh) {
                        "Give the point another name.");
     }
     if (point.at.size() != index(mesh.dim)) {
-      throw InputError(fmt::format("has {} numbers", point.at.size()),
+      throw InputError("has " + counted(point.at.size(), "number"),
                        place.where("points." + name + ".at"),
                        fmt::format("Give {} numbers, one per dimension.", mesh.dim));
     }

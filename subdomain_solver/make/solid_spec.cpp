@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.hpp"
 #include "subdomain_solver/fe/element.hpp"
 
 namespace abut {
@@ -27,7 +28,7 @@ void lattice_keys(Fields& f, std::size_t dim, std::vector<double>& lengths,
              "lengths of the last element over the first, one number per dimension", positive);
   for (const auto& [key, list] :
        {std::pair("lengths", &lengths), {"elements", &elements}, {"grading", &grading}}) {
-    f.check(list->size() == dim, key, fmt::format("has {} numbers", list->size()),
+    f.check(list->size() == dim, key, "has " + counted(list->size(), "number"),
             fmt::format("Give {} numbers, one per dimension.", dim));
   }
   for (double count : elements) {
