@@ -12,6 +12,7 @@
 #include "subdomain_solver/body.hpp"
 #include "subdomain_solver/fe/element_limit.hpp"
 #include "subdomain_solver/make/bar_extras.hpp"
+#include "subdomain_solver/make/body_facts.hpp"
 #include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/make/mass_range.hpp"
 #include "subdomain_solver/make/read_body.hpp"
@@ -68,7 +69,8 @@ struct BarSchemeMaker {
     if (s.step > limit * (1.0 + limit_slack)) {
       refuse(place, "integrator.central_difference.step",
              fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
-             "Give a step of at most the limit, or an implicit integrator such as newmark.");
+             doubts_first({bar.data().density, bar.data().youngs_modulus}, place) +
+                 "Give a step of at most the limit, or an implicit integrator such as newmark.");
     }
     if (s.dispersion_terms > 1 && bar.data().elements < 2 * s.dispersion_terms + 2) {
       refuse(place, "integrator.central_difference.dispersion_terms",

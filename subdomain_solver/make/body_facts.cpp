@@ -59,6 +59,12 @@ double limit_of(const FeModelSpec& fe, Mesh mesh, const BodySpec& spec, const Pl
   return std::isfinite(limit) ? limit : 0.0;
 }
 
+std::optional<MaterialDoubt> doubt_of(const DensityAndStiffness& numbers, const Place& place) {
+  const UnitsRead& read = place.document.units_read();
+  const bool known = place.document.declares_units() || !read.with.empty();
+  return material_doubt(numbers, place.document.units(), known);
+}
+
 void add_material(const BodySpec& spec, const Place& place, int dimension, bool deforms,
                   BodyFacts& facts) {
   if (!spec.material) return;
@@ -66,10 +72,7 @@ void add_material(const BodySpec& spec, const Place& place, int dimension, bool 
   const Moduli moduli = law->moduli();
   const double stiffness = dimension == 1 ? moduli.youngs() : moduli.p_wave();
   if (deforms) facts.wave_speed = std::sqrt(stiffness / law->density());
-  const UnitsRead& read = place.document.units_read();
-  const bool known = place.document.declares_units() || !read.with.empty();
-  const std::optional<MaterialDoubt> doubt =
-      material_doubt({law->density(), moduli.youngs()}, place.document.units(), known);
+  const std::optional<MaterialDoubt> doubt = doubt_of({law->density(), moduli.youngs()}, place);
   if (!doubt) return;
   const auto name = [](const auto& material) { return std::string(material.name); };
   facts.material_key = "material." + std::visit(name, *spec.material);
@@ -125,6 +128,17 @@ BodyFacts body_facts(const Document& document, const std::string& path,
     facts.step_key = fmt::format("integrator.{}.step", std::visit(name, *spec.integrator));
   }
   return facts;
+}
+
+std::string doubts_first(const DensityAndStiffness& numbers, const Place& place) {
+  const std::optional<MaterialDoubt> doubt = doubt_of(numbers, place);
+  if (!doubt) return {};
+  std::string words = fmt::format("The material's {}. {} Or: ", doubt->what, doubt->remedy);
+  // These are in SI whatever the scene's system is, whose symbols errors have in place of those.
+  for (const auto& [symbol, name] : {std::pair{"kg/m^3", "kilograms per m^3"}, {" Pa ", " pascal "}})
+    for (std::size_t at; (at = words.find(symbol)) != std::string::npos;)
+      words.replace(at, std::string_view(symbol).size(), name);
+  return words;
 }
 
 }  // namespace abut

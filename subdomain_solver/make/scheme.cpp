@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "subdomain_solver/make/body_facts.hpp"
+#include "subdomain_solver/make/makers.hpp"
 #include "subdomain_solver/time/drift_kick_drift.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "subdomain_solver/time/implicit_dynamics.hpp"
@@ -31,6 +33,14 @@ struct SchemeMaker {
   const MakeWatch& watch;
   const LooseMotions& loose;
 
+  /// A stiffness or a density in other units has other stable steps.
+  std::string doubts() const {
+    if (!spec.material) return {};
+    const FeModelSpec* fe = std::get_if<FeModelSpec>(&spec.model);
+    const auto law = make_material(*spec.material, place, fe != nullptr ? fe->dimension : 3);
+    return doubts_first({law->density(), law->moduli().youngs()}, place);
+  }
+
   SolidInterior::Scheme operator()(const CentralDifferenceSpec& s) const {
     const double limit = stable_limit();
     const std::string key = "integrator.central_difference.step";
@@ -41,8 +51,9 @@ struct SchemeMaker {
     if (s.step > limit && !s.clamp) {
       throw InputError(fmt::format("{:g} s is above the stable limit of {:g} s", s.step, limit),
                        place.where(key),
-                       "Give a step of at most the limit, above_limit: clamp, or an implicit "
-                       "integrator such as newmark.");
+                       doubts() +
+                           "Give a step of at most the limit, above_limit: clamp, or an implicit "
+                           "integrator such as newmark.");
     }
     // A whole number of parts, so that they divide windows as the step does.
     const double parts = s.step > limit ? std::ceil(s.step / (clamped * limit)) : 1.0;
