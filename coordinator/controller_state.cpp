@@ -51,6 +51,8 @@ void Controller::load_end(std::span<const std::byte> bytes,
   if (!roles_.keep(joints_))
     for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].role = roles[j];
   EnergyGuard(guard_).state(archive);  // this stage has an account of its own
+  std::vector<double> lost_before;
+  archive.field("start_lost", lost_before);
   bodies_.ends(archive);
   for (const Joint& joint : joints_) {  // of surfaces that are no more
     if (!is_swapped(joint)) continue;
