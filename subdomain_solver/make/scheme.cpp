@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "subdomain_solver/make/body_facts.hpp"
-#include "subdomain_solver/make/makers.hpp"
+#include "subdomain_solver/make/material.hpp"
 #include "subdomain_solver/time/drift_kick_drift.hpp"
 #include "subdomain_solver/time/explicit_dynamics.hpp"
 #include "subdomain_solver/time/implicit_dynamics.hpp"
