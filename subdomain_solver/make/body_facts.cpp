@@ -135,7 +135,8 @@ std::string doubts_first(const DensityAndStiffness& numbers, const Place& place)
   if (!doubt) return {};
   std::string words = fmt::format("The material's {}. {} Or: ", doubt->what, doubt->remedy);
   // These are in SI whatever the scene's system is, whose symbols errors have in place of those.
-  for (const auto& [symbol, name] : {std::pair{"kg/m^3", "kilograms per m^3"}, {" Pa ", " pascal "}})
+  for (const auto& [symbol, name] :
+       {std::pair{"kg/m^3", "kilograms per m^3"}, {" Pa ", " pascal "}})
     for (std::size_t at; (at = words.find(symbol)) != std::string::npos;)
       words.replace(at, std::string_view(symbol).size(), name);
   return words;
