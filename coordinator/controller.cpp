@@ -73,7 +73,7 @@ RunEnd Controller::run() {
   try {
     if (!resumed_) start();
     while (running()) {
-      if (event_ && !passive_.active() && event_->is_over(joints_)) {
+      if (event_ && event_->is_over(joints_, clock_.next(), bodies_)) {
         stop();
         break;
       }
@@ -250,6 +250,7 @@ void Controller::step_window() {
   const double borne_before = ends ? borne_of_allowed(bodies_) : 0.0;
   while (goes_on()) {
     try_window(window);
+    if (ends_in_window()) return;
     Judgement judgement = judge(window);
     if (judgement.verdict == Judgement::Verdict::accept && borne_before > 0.0)
       judgement = judge_springs(window, borne_before);

@@ -157,6 +157,7 @@ class Controller {
   void release_swapped(const std::vector<Role>& roles);
   void tell_swaps();
   bool ends_before(const TimeWindow& window);
+  bool ends_in_window();
   void stop();
   void state(Archive& archive);
   double totals(Archive& archive);

@@ -154,6 +154,7 @@ bool Controller::go_passively(double time, const std::string& reason) {
 void Controller::step_passively() {
   if (!goes_on()) return;
   const TimeWindow window = clock_.next();
+  if (ends_before(window)) return;
   SpanScope span(bodies_.spans(), "passive window", clock_.windows());
   span.covers(window.begin, window.end);
   for (Joint& joint : joints_)  // some came near since

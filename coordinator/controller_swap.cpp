@@ -54,19 +54,28 @@ void Controller::tell_swaps() {
   }
 }
 
-/// Whether contact that the stage waits for may begin in a window, at whose begin all stand. The
-/// latest replies become those of that time.
+/// Whether contact that the stage waits for begins with a window, at whose begin all stand.
 bool Controller::ends_before(const TimeWindow& window) {
-  if (!event_ || !event_->comes(joints_, window, bodies_)) return false;
-  if (!event_->recall(bodies_)) {
-    prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
-    if (std::optional<Failed> failed = bodies_.advance_all()) fail(failed->time, failed->detail);
-  }
+  if (!event_ || !event_->comes(joints_, window, bodies_, passive_.active())) return false;
   stop();
   return true;
 }
 
+/// Whether it has begun in a window that has its answer: bodies go back to where they are apart.
+bool Controller::ends_in_window() {
+  if (!event_ || attempt_.failed || !attempt_.converged() || !event_->came(joints_, bodies_))
+    return false;
+  bodies_.restore_all();
+  stop();
+  return true;
+}
+
+/// The latest replies become those of the time at which all stand.
 void Controller::stop() {
+  if (!event_->recall(bodies_)) {
+    prepare({0, clock_.time(), clock_.time()}, 1, Sampling::substeps);
+    if (std::optional<Failed> failed = bodies_.advance_all()) fail(failed->time, failed->detail);
+  }
   event_->stop();
   clock_.stop();
 }

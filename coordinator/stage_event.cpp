@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
+#include "coordinator/coupling/nearness.hpp"
 #include "coordinator/coupling/watch.hpp"
 #include "coordinator/touching_pairs.hpp"
 
@@ -13,8 +14,10 @@ namespace abut {
 
 namespace {
 
-/// Ways that surfaces can come in a window: those nearer than this may meet in it.
-constexpr double awaited_ways = 1.5;
+/// Ends of bars, whose windows end where they touch or part.
+bool is_of_ends(const Joint& joint, const Bodies& bodies) {
+  return bodies.port(joint.sides[0]).geometry.dim == 1;
+}
 
 }  // namespace
 
@@ -30,14 +33,21 @@ std::string StageEvent::words() const {
   return fmt::format("the {} of contact '{}'", awaits_contact_ ? "begin" : "end", name_);
 }
 
-bool StageEvent::comes(std::span<Joint> joints, const TimeWindow& window,
-                       const Bodies& bodies) const {
-  return awaits_contact_ && std::ranges::any_of(joints, [&](Joint& joint) {
+bool StageEvent::comes(std::span<const Joint> joints, const TimeWindow& window,
+                       const Bodies& bodies, bool passively) const {
+  return awaits_contact_ && std::ranges::any_of(joints, [&](const Joint& joint) {
            if (joint.interface != interface_) return false;
-           if (joint.closed()) return true;
-           if (!only_passive(joint, bodies)) return false;
-           const auto [apart, speed] = joint.watch->approach(joint, bodies);
-           return apart <= awaited_ways * speed * window.length();
+           if (is_of_ends(joint, bodies)) return joint.closed();
+           if (!passively && !only_passive(joint, bodies)) return false;
+           return joint.closed() ||
+                  (!bodies.taken_back() && may_meet(joint, bodies, window.length()));
+         });
+}
+
+bool StageEvent::came(std::span<const Joint> joints, const Bodies& bodies) const {
+  return awaits_contact_ && std::ranges::any_of(joints, [&](const Joint& joint) {
+           return joint.interface == interface_ && !is_of_ends(joint, bodies) &&
+                  joint.watch->show(joint, bodies).closed;
          });
 }
 
@@ -56,13 +66,18 @@ bool StageEvent::recall(Bodies& bodies) const {
 
 void StageEvent::see(std::span<const InterfaceReport> reports) {
   const std::size_t i = index(interface_);  // none where no two bodies can meet
-  pressed_ = pressed_ || (i < reports.size() && reports[i].closed);
+  presses_ = i < reports.size() && reports[i].closed;
+  pressed_ = pressed_ || presses_;
 }
 
-bool StageEvent::is_over(std::span<const Joint> joints) const {
-  return !awaits_contact_ && pressed_ && std::ranges::none_of(joints, [this](const Joint& joint) {
-    return joint.interface == interface_ && joint.closed();
-  });
+bool StageEvent::is_over(std::span<const Joint> joints, const TimeWindow& next,
+                         const Bodies& bodies) const {
+  return !awaits_contact_ && pressed_ && !presses_ &&
+         std::ranges::none_of(joints, [&](const Joint& joint) {
+           if (joint.interface != interface_) return false;
+           return is_of_ends(joint, bodies) ? joint.closed()
+                                            : may_meet(joint, bodies, next.length());
+         });
 }
 
 }  // namespace abut

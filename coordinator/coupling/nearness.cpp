@@ -19,6 +19,9 @@ constexpr double distance_rounding = 1.0e-12;
 /// is apart by that on the wrong sides.
 constexpr double touching = 1.0e-6;
 
+/// Of the way that is foreseen: sides that are nearer than this may meet.
+constexpr double foreseen_ways = 1.5;
+
 struct Boxes {
   double apart = 0.0;   // [m]
   double extent = 0.0;  // [m] longest side of the smaller one
@@ -63,6 +66,12 @@ double closing_bound(const Joint& joint, const Bodies& bodies) {
   return std::min(absolute, (a.velocity() - b.velocity()).norm() + foreseen);
 }
 
+/// [m/s] Of the points of both sides at all times of the last replies.
+double seen_closing(const Joint& joint, const Bodies& bodies) {
+  const PortPose &a = bodies.pose(joint.sides[0]), &b = bodies.pose(joint.sides[1]);
+  return (a.velocity() - b.velocity()).norm() + a.spread() + b.spread();
+}
+
 /// [m/s] Of two boxes of velocities, the largest difference.
 double difference(const PortResponse& a, const PortResponse& b) {
   double square = 0.0;
@@ -103,6 +112,10 @@ double largest_coordinate(const PortResponse& reply) {
 
 Approach approach_of(const Joint& joint, double margin, const Bodies& bodies) {
   return {std::max(0.0, distance(joint, bodies) - margin), closing_bound(joint, bodies)};
+}
+
+bool may_meet(const Joint& joint, const Bodies& bodies, double length) {
+  return distance(joint, bodies) <= foreseen_ways * seen_closing(joint, bodies) * length;
 }
 
 bool swept_apart(const Joint& joint, double margin, const Bodies& bodies) {

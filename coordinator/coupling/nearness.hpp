@@ -10,6 +10,10 @@ namespace abut {
 /// How far the sides are apart at the end of the last replies, and how fast they may close.
 Approach approach_of(const Joint& joint, double margin, const Bodies& bodies);
 
+/// Whether the sides meet within `length` [s] if they go on at the speeds of their points in the
+/// last replies, and half as fast again. What bodies foresee, and margins, are no part of it.
+bool may_meet(const Joint& joint, const Bodies& bodies, double length);
+
 /// Whether the boxes that the sides swept in the last replies were apart in every record's part.
 bool swept_apart(const Joint& joint, double margin, const Bodies& bodies);
 

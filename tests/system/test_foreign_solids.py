@@ -71,6 +71,27 @@ class Pair(ForeignTest):
         self.assertGreater(self.summary()["accuracy"]["given_up"]["passive_windows"], 0)
 
 
+class Events(ForeignTest):
+    def test_stages_end_with_contact_of_bodies_that_tell_no_bound_of_their_speed(self):
+        """Gaps of 5 mm close at 20 m/s after 0.25 ms; contact lasts 2 ms, 4 % more where both
+        bounce (two_plates.yaml). Events come with windows, of 25 us at most."""
+        for scene, longer in (("plates.yaml", 1.02), ("two_plates.yaml", 1.05)):
+            with self.subTest(scene):
+                own = self.own_scene("python_body", scene, "my_body.py")
+                text = own.read_text("utf-8").replace("end: 0.0035,",
+                                                      "end: 0.002, until: {contact: impact},")
+                own.write_text("meta: {title: Ends with events}\n" + text[text.index("time:"):] +
+                               "stages:\n"
+                               "  pressed: {time: {end: 0.0035, until: {apart: impact}}}\n")
+                said = self.succeed(self.abut("run", own, "--out", self.out, "--force"))
+                begun = re.search("next stage, from ([^ ]+) s", said.stdout + said.stderr)
+                self.assertGreater(float(begun[1]), 2.5e-4 - 2.0 * 2.5e-5)
+                self.assertLess(float(begun[1]), 2.5e-4 + 1.0e-12)
+                reached = self.summary()["time"]["reached"]
+                self.assertGreater(reached, 2.25e-3 - 2.5e-5)
+                self.assertLess(reached, 2.5e-4 + longer * 2.0e-3 + 2.0 * 2.5e-5)
+
+
 class GetFem(ForeignTest):
     def test_a_bar_of_getfem_meets_one_of_ours(self):
         self.collide("getfem_body", "bars.yaml", "getfem_bar.py")

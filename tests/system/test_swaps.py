@@ -259,7 +259,7 @@ stages:
                     self.assertEqual(len(swaps), 0 if first == self.FINE else 1)
                     for swap in swaps:
                         self.assert_kept(swap, first)
-                        self.assertLess(swap["time"], 1.0e-4, "1 mm at 10 m/s")
+                        self.assertLess(swap["time"], 1.0e-4 + 1.0e-12, "1 mm at 10 m/s")
                         self.assertGreater(swap["time"], 4.9e-5 if not more else 6.0e-5)
                     impulses.append(self.summary()["measures"][f"contact.{name}.impulse"])
         for impulse in impulses:  # windows lie elsewhere against the blow
@@ -292,7 +292,8 @@ stages:
         self.run_text(text.replace("stages:\n", ""))
         summary = self.summary()
         self.assertEqual(summary["status"], "completed")
-        self.assertLess(summary["time"]["reached"], 1.0e-4)
+        # 1 mm at 10 m/s: they touch with the end of a window, and press in the next one.
+        self.assertAlmostEqual(summary["time"]["reached"], 1.0e-4, delta=1.0e-12)
         self.assertEqual(summary["measures"]["contact.meet.count"], 0)
 
     def test_what_cannot_go_over_is_refused_in_words(self):
