@@ -90,19 +90,23 @@ std::string written(const std::vector<std::string>& values) { return written_lis
 std::string written(const std::array<std::string, 2>& values) { return written_list(values); }
 
 /// A tree of somebody else in one line. A plain scalar stays plain, so that a number stays one.
-std::string flow(const YAML::Node& node) {
+std::string flow(const YAML::Node& node, const std::string& path,
+                 const ResolvedYaml::Placed& placed) {
   std::vector<std::string> items;
   if (node.IsMap()) {
     for (const auto& pair : node)
-      items.push_back(fmt::format("{}: {}", flow(pair.first), flow(pair.second)));
+      items.push_back(fmt::format(
+          "{}: {}", flow(pair.first, {}, {}),
+          flow(pair.second, pair.first.IsScalar() ? join_path(path, pair.first.Scalar()) : path,
+               placed)));
     return fmt::format("{{{}}}", fmt::join(items, ", "));
   }
   if (node.IsSequence()) {
-    for (const YAML::Node& item : node) items.push_back(flow(item));
+    for (const YAML::Node& item : node) items.push_back(flow(item, path, placed));
     return fmt::format("[{}]", fmt::join(items, ", "));
   }
   if (!node.IsScalar()) return "null";
-  const std::string& text = node.Scalar();
+  const std::string text = placed ? placed(path, node.Scalar()) : node.Scalar();
   const auto plain_letter = [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/' || c == '+';
   };
@@ -216,7 +220,7 @@ std::unique_ptr<Fields> ResolvedYaml::writer_at(std::string_view path) {
   return std::make_unique<Writer>(*at, units_);
 }
 
-void ResolvedYaml::copy(std::string_view path, const Document& document) {
+void ResolvedYaml::copy(std::string_view path, const Document& document, const Placed& placed) {
   Node* at = root_.get();
   YAML::Node from(document.root());
   for (const std::string& step : split_path(path)) {
@@ -224,7 +228,7 @@ void ResolvedYaml::copy(std::string_view path, const Document& document) {
     from.reset(from[step]);
   }
   at->kind = Node::Kind::text;
-  at->text = flow(from);
+  at->text = flow(from, std::string(path), placed);
 }
 
 namespace {

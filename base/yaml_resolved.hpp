@@ -34,8 +34,11 @@ class ResolvedYaml {
     const std::unique_ptr<Fields> writer = writer_at(path);
     value.fields(*writer);
   }
-  /// What a document has at a path, whatever it is: keys that belong to another program.
-  void copy(std::string_view path, const Document& document);
+  /// What a document has at a path, whatever it is: keys that belong to another program. `placed`
+  /// gets the key path of every text, from the document's root, and the text that is to stand
+  /// there.
+  using Placed = std::function<std::string(const std::string& key, const std::string& text)>;
+  void copy(std::string_view path, const Document& document, const Placed& placed = {});
   /// Leaves out, below a path, what is not wanted; `wanted` is asked of every key path, from the
   /// outside in.
   void keep(std::string_view path, const std::function<bool(const std::string&)>& wanted);

@@ -45,8 +45,8 @@ struct Pause {
 ///   judge         what becomes of a window that was tried
 ///   go_passively  what the iteration cannot take, bodies take passively (controller_passive.cpp)
 ///
-/// When windows are cut and what contact carries on is ContactEvents' affair; the iteration inside
-/// a window is that of Schwarz; what is told, the Narrator's.
+/// When windows are cut and what contact carries on is ContactEvents' affair; the iteration,
+/// Schwarz'; what is told, the Narrator's.
 class Controller {
  public:
   /// The bodies must outlive it. `interrupted`: the run is to end between windows; may be null.
@@ -68,6 +68,8 @@ class Controller {
   /// bodies stand, and with those that have met. `handed`: by body, of those that are another one
   /// now; throws RunError where these touch.
   void load_end(std::span<const std::byte> bytes, std::vector<std::optional<HandOver>> handed = {});
+  /// Tells the observers of an error: in place of `run`, where the run cannot go on.
+  void give_up(const std::exception& error, bool interrupted = false, double wall_seconds = 0.0);
   const BodyRecord& record(int body) const { return bodies_.response(body).records.back(); }
   /// Who is told what the run's time goes into: "window", "flight", "island" and so on.
   void tell_spans(SpanSink sink) { bodies_.tell_spans(std::move(sink)); }
@@ -87,10 +89,9 @@ class Controller {
     std::string reason;  // of a failure
     bool final = false;  // no other way takes the window either
   };
-  struct Flight {           // how many windows are flown free in one request
-    int longest = 1;        // (flight_work.hpp)
-    int limit = 1;          // at present
-    bool grounded = false;  // came too near: step once
+  struct Flight {                // how many windows are flown free in one request
+    int longest = 1, limit = 1;  // (flight_work.hpp), and at present
+    bool grounded = false;       // came too near: step once
   };
   struct Waiting {  // [windows] in which bodies stay passive before the accurate method is tried
     int wait = 2, left = 0, accurate = 0;
@@ -166,7 +167,6 @@ class Controller {
   void tell_start();  // of a run that goes on
   void state_of_pairs(Archive& archive);
   RunEnd finish(double wall_seconds);
-  void give_up(const std::exception& error, bool interrupted, double wall_seconds);
 
   const Scene& scene_;
   Bodies bodies_;

@@ -40,6 +40,7 @@ void Controller::load_end(std::span<const std::byte> bytes,
   staged_ = true;
   handed_ = std::move(handed);
   introduce();
+  tell_start();
   Archive archive = Archive::reader(bytes, Archive::Form::named);
   state_of_pairs(archive);
   end_.given_up.largest = totals(archive);
@@ -61,7 +62,6 @@ void Controller::load_end(std::span<const std::byte> bytes,
         reaction = {};
   }
   clock_.anchor();
-  tell_start();
 }
 
 void Controller::tell_start() {

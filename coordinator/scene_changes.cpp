@@ -15,10 +15,11 @@
 namespace abut {
 namespace {
 
-/// What no state depends on. Measures are of the whole run: their filters stay.
+/// What no state depends on: stages are those to come. Measures are of the whole run: their filters
+/// stay.
 const std::regex& always_free() {
   static const std::regex keys(
-      R"((meta|network)(\..*)?|time\.end|output\.(records_per_window|fields|checkpoint)(\..*)?|)"
+      R"((meta|network|stages)(\..*)?|time\.end|output\.(records_per_window|fields|checkpoint)(\..*)?|)"
       R"(output|bodies\.[^.]+\.launch(\..*)?)");
   return keys;
 }

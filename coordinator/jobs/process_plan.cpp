@@ -20,14 +20,14 @@ constexpr std::string_view key_letters =  // of a file of keys
 
 /// Key path of a body's only model; empty: it has none that says more than its name.
 std::string model_path(const Document& document, const std::string& body) {
-  const std::string path = "bodies." + body + ".model";
+  const std::string path = body + ".model";
   const std::vector<std::string> models = document.keys(path);
   return models.size() == 1 ? path + "." + models.front() : std::string();
 }
 
 int threads_of(const Document& document, const std::string& body) {
   int threads = 1;
-  const std::string model = model_path(document, body);
+  const std::string model = model_path(document, "bodies." + body);
   if (model.empty() || !document.has(model + ".threads")) return threads;
   read_fields(document, model, [&threads](Fields& f) {
     f.optional("threads", threads, "", "");
@@ -91,8 +91,8 @@ std::vector<MeshFile> mesh_files(const Scene& scene, const Document& document) {
   check_tables(document);
   const std::filesystem::path folder = std::filesystem::path(document.name()).parent_path();
   std::vector<MeshFile> files;
-  for (const auto& [name, entry] : scene.bodies) {
-    const std::string model = model_path(document, name);
+  const auto add = [&](const std::string& at, const std::string& as_written) {
+    const std::string model = model_path(document, at);
     for (const std::string& kind : document.keys(model + ".mesh")) {
       const std::string map = model + ".mesh." + kind;
       if (model.empty() || !document.has(map + ".file")) continue;
@@ -101,13 +101,20 @@ std::vector<MeshFile> mesh_files(const Scene& scene, const Document& document) {
         f.required("file", file, "", "");
         f.ignore_rest();
       });
-      const std::string written = document.body_of_copy(name);
-      const std::string body = written.empty() ? name : written;
-      const std::string key = "bodies." + body + map.substr(("bodies." + name).size()) + ".file";
+      const std::string key = as_written + map.substr(at.size()) + ".file";
       if (std::ranges::find(files, key, &MeshFile::key) == files.end())
         files.push_back({key, (folder / file).string()});
     }
+  };
+  for (const auto& [name, entry] : scene.bodies) {
+    const std::string written = document.body_of_copy(name);
+    add("bodies." + name, "bodies." + (written.empty() ? name : written));
   }
+  for (const std::string& stage : document.keys("stages"))
+    for (const std::string& name : document.keys("stages." + stage + ".bodies")) {
+      const std::string at = "stages." + stage + ".bodies." + name;
+      add(at, at);
+    }
   return files;
 }
 

@@ -134,6 +134,7 @@ void Checkpoints::write(const Pause& pause, Controller& controller) {
 }
 
 void Checkpoints::resume(const Checkpoint& from, Controller& controller) {
+  latest_ = from.time;
   check_bodies(from, bodies_);
   if (from.stage_ends)
     controller.load_end(bytes_of(from.run), handed_of(from));
@@ -148,7 +149,6 @@ void Checkpoints::resume(const Checkpoint& from, Controller& controller) {
     observer->state(archive);
     archive.finish();
   }
-  latest_ = from.time;
 }
 
 }  // namespace abut

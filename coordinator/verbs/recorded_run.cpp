@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <regex>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -155,12 +156,22 @@ Error with_place_of_files(const Error& error, const fs::path& directory, std::op
   return Error(error.what_is_wrong, error.where, remedy);
 }
 
+/// Of a stage that cannot begin, or a state that does not fit, files tell as well.
+void take_up(const Checkpoint& from, Checkpoints& checkpoints, Controller& controller) {
+  try {
+    checkpoints.resume(from, controller);
+  } catch (const std::exception& error) {
+    controller.give_up(error);
+    throw;
+  }
+}
+
 /// To the end, from the begin or a checkpoint.
 RunEnd conduct(Controller& controller, Checkpoints& checkpoints, const Checkpoint* from,
                const fs::path& directory) {
   controller.between_windows = [&](const Pause& pause) { checkpoints.look(pause, controller); };
   try {
-    if (from != nullptr) checkpoints.resume(*from, controller);
+    if (from != nullptr) take_up(*from, checkpoints, controller);
     return controller.run();
   } catch (const LostBody& error) {
     throw with_place_of_files(error, directory, checkpoints.latest(),
@@ -256,18 +267,39 @@ class Restarts {
 
 }  // namespace
 
-/// As they are written, but for quotes, which stages lose: what a stage does not name is that of
-/// the stage before.
+namespace {
+
+/// The scene that a run keeps lies in another folder, and its stages mean the same mesh files.
+ResolvedYaml::Placed placed_by(const Document& document) {
+  return [folder = fs::absolute(document.name()).parent_path()](const std::string& key,
+                                                                const std::string& text) {
+    static const std::regex files(
+        R"(stages\.[^.]+\.bodies\.[^.]+\.model\.[^.]+\.mesh\.[^.]+\.file)");
+    return std::regex_match(key, files) ? (folder / text).string() : text;
+  };
+}
+
+}  // namespace
+
+/// With all that a scene leaves to defaults: where a run goes on, its scene says them all, but what
+/// a stage to come repeats stays as it was written.
 std::vector<std::string> swapped_bodies(const Document& document) {
   const std::optional<Document> next = document.next_stage();
   std::vector<std::string> names;
   if (!next) return names;
+  const auto keys_of_bodies = [](const Document& stage) {
+    ResolvedYaml resolved(stage.units());
+    resolve_body_keys(read_scene(stage), stage, resolved);
+    return resolved.text();
+  };
+  const std::vector<Difference> changed =
+      differences(keys_of_bodies(document), keys_of_bodies(*next));
   for (const std::string& name : document.keys("bodies")) {
-    const std::string key = join_path(join_path("bodies", name), "model");
-    ResolvedYaml before(document.units()), now(next->units());
-    before.copy(key, document);
-    now.copy(key, *next);
-    if (!differences(before.text(), now.text()).empty()) names.push_back(name);
+    const std::string model = join_path(join_path("bodies", name), "model");
+    const auto below = [&model](const Difference& change) {
+      return change.key == model || change.key.starts_with(model + ".");
+    };
+    if (std::ranges::any_of(changed, below)) names.push_back(name);
   }
   return names;
 }
@@ -281,7 +313,7 @@ std::string resolved_text(const Scene& scene, const Document& document) {
   ResolvedYaml resolved(document.units());
   resolved.add("", scene);
   resolve_body_keys(scene, document, resolved);
-  if (document.has("stages")) resolved.copy("stages", document);
+  if (document.has("stages")) resolved.copy("stages", document, placed_by(document));
   return text + resolved.text();
 }
 

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/input_errors.hpp"
 #include "base/log.hpp"
 #include "coordinator/record/checkpoint_file.hpp"
 #include "coordinator/run_directory.hpp"
@@ -23,6 +25,38 @@
 namespace abut {
 
 namespace {
+
+/// Stages to come are those that the run began with: what has begun is the scene's own by now.
+void check_names(const std::string& before, const Document& now) {
+  const std::vector<std::string> kept =
+      Document::from_text("the checkpoint", before).keys("stages");
+  InputErrors errors;
+  for (const std::string& name : now.keys("stages"))
+    if (std::ranges::find(kept, name) == kept.end())
+      errors.add({"is no stage to come", now.where(join_path("stages", name)),
+                  kept.empty() ? "None follows: give keys of the present one without stages.NAME."
+                               : fmt::format("Give one of: {}; or keys of the present one, without "
+                                             "stages.NAME.",
+                                             fmt::join(kept, ", "))});
+  errors.raise();
+}
+
+/// Of a body that has another model in the stage that follows, motion is kept in another form.
+void check_swapped(const std::string& before, const Document& now, const Document& next) {
+  const std::vector<std::string> kept =
+      swapped_bodies(Document::from_text("the checkpoint", before));
+  const std::vector<std::string> wanted = swapped_bodies(now);
+  InputErrors errors;
+  for (const std::string& name : now.keys("bodies")) {
+    const bool was = std::ranges::find(kept, name) != kept.end();
+    if (was == (std::ranges::find(wanted, name) != wanted.end())) continue;
+    errors.add({was ? "is that of the stage before: the state was kept for another one"
+                    : "is another than in the stage before: the state was kept for the same one",
+                next.where(join_path(join_path("bodies", name), "model")),
+                "Resume from before the stage's end, or run the scene anew."});
+  }
+  errors.raise();
+}
 
 /// The scene that goes on: that of the checkpoint, or one that may take its place.
 Document scene_of(const ResumeCommand& command, const Checkpoint& from) {
@@ -38,6 +72,7 @@ Document scene_of(const ResumeCommand& command, const Checkpoint& from) {
       command.scene.empty()
           ? Document::from_text(command.directory + "/scene.resolved.yaml", from.scene, overrides)
           : Document::load(command.scene, overrides);
+  check_names(from.scene, document);
   check_changes(from.scene, resolved_text(read_all_keys(document), document), overrides);
   if ((another_end || !command.end.empty()) && document.has("stages"))
     throw InputError("cannot be another, as stages follow, which have their own ends",
@@ -48,6 +83,7 @@ Document scene_of(const ResumeCommand& command, const Checkpoint& from) {
   if (!next)
     throw InputError("has no stage any more that could follow", command.directory,
                      "Resume with the stages that the run began with.");
+  check_swapped(from.scene, document, *next);
   return std::move(*next);
 }
 

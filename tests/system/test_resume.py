@@ -319,6 +319,30 @@ class Swaps(Resume):
             self.assertEqual(self.summary(whole)["swaps"], self.summary(self.out)["swaps"])
             shutil.rmtree(self.out)
 
+    def test_a_model_that_a_stage_repeats_and_a_mesh_file_beside_the_scene(self):
+        """The scene that a run keeps lies elsewhere, and says what was left to defaults: neither
+        makes another stage of it."""
+        shutil.copy(ROOT / "configs" / "meshes" / "plate_with_hole.msh", self.folder / "p.msh")
+        same = "model: {fe: {dimension: 2, mesh: {rectangle: {lengths: [2, 2], elements: [4, 2]}}}}"
+        scene = self.folder / "scene.yaml"
+        scene.write_text(f"""time: {{end: 0.1, window: 1.0e-5}}
+bodies:
+  plate:
+    {same}
+    material: {{linear_elastic: {{youngs_modulus: 1.0e7, poissons_ratio: 0.3, density: 1000.0}}}}
+    integrator: {{newmark: {{step: 1.0e-5}}}}
+    initial: {{velocity: [0.0, 1.0]}}
+stages:
+  again: {{time: {{end: 0.102}}, bodies: {{plate: {{{same}}}}}}}
+  other:
+    time: {{end: 0.103}}
+    bodies: {{plate: {{model: {{fe: {{mesh: {{gmsh: {{file: p.msh}}}}}}}}}}}}
+output: {{checkpoint: {{windows: 500}}}}
+""", encoding="utf-8")
+        whole = self.run_whole(scene)
+        self.assertEqual(len(self.summary(whole)["swaps"]), 1)
+        self.assert_same_where_killed((0.05, 0.101), whole, scene)
+
 
 class Stages(Resume):
     SCENE = ROOT / "configs" / "contact" / "preload_then_impact.yaml"

@@ -11,6 +11,8 @@ import itertools
 import math
 import sys
 
+import yaml
+
 sys.dont_write_bytecode = True
 from support import ROOT, SystemTest, main  # noqa: E402
 
@@ -316,6 +318,30 @@ stages:
         for text, code, words in cases:
             with self.subTest(words=words):
                 self.assertIn(words, self.run_text(text, code=code))
+                if code != 3:
+                    continue
+                summary = self.summary()
+                self.assertEqual(summary["status"], "failed")
+                self.assertIn(words, summary["reason"])
+
+    def test_a_stage_that_cannot_begin_goes_on_as_another(self):
+        """Keys of stages to come are no part of a state, but for whose model is another."""
+        fine = model(2, "rigid", [7, 5], "quad4")
+        turning = ["-1000*y", "1000*x"]  # 0.02 rad: too far for a law of small strain
+        self.run_text(scene(2, "linear", [(self.RUNG, RIGID), (fine, RIGID)], turning))
+        wanted = self.summary()["state_hash"]
+        self.run_text(scene(2, "linear", [(self.RUNG, RIGID), (self.FE, SCHEMES["newmark"])],
+                            turning), code=3)
+        stage = next(iter(yaml.safe_load((self.folder / "scene.yaml").read_text())["stages"]))
+        own = f"stages.{stage}.bodies.block"
+        rigid = ["--set", f"{own}.integrator={{{RIGID}}}", "--set"]
+        for words, change in (("is that of the stage before", f"{own}.model={{{self.RUNG}}}"),
+                              ("stages.other: is no stage to come", "stages.other.time.end=1.0")):
+            refused = self.abut("resume", self.out, "--local", *rigid, change)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertIn(words, refused.stderr)
+        self.succeed(self.abut("resume", self.out, "--local", *rigid, f"{own}.model={{{fine}}}"))
+        self.assertEqual(self.summary()["state_hash"], wanted)
 
 
 if __name__ == "__main__":
