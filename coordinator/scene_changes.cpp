@@ -19,7 +19,8 @@ namespace {
 /// stay.
 const std::regex& always_free() {
   static const std::regex keys(
-      R"((meta|network|stages)(\..*)?|time\.end|output\.(records_per_window|fields|checkpoint)(\..*)?|)"
+      R"((meta|network|stages)(\..*)?|time\.end|)"
+      R"(output\.(records_per_window|fields|checkpoint)(\..*)?|)"
       R"(output|bodies\.[^.]+\.launch(\..*)?)");
   return keys;
 }
