@@ -45,6 +45,11 @@ Rates rates_of(const ProbedRun& probe) {
   return rates;
 }
 
+/// [s] of the clock to write the states of fields in so much of the scene's time.
+double fields_seconds(const ProbedRun& probe, double time) {
+  return probe.states_apart > 0.0 ? time / probe.states_apart * probe.state_wall : 0.0;
+}
+
 }  // namespace
 
 std::optional<Prediction> predict(const ProbedRun& probe, double end, double startup,
@@ -55,7 +60,8 @@ std::optional<Prediction> predict(const ProbedRun& probe, double end, double sta
   }
   if (probe.stretches.empty()) return std::nullopt;
   const Rates rates = rates_of(probe);
-  const double left = std::max(0.0, end - probe.reached), spent = startup + probe.wall;
+  const double left = std::max(0.0, end - probe.reached);
+  const double spent = startup + probe.wall + fields_seconds(probe, left);
   const auto with = [&](double rate) { return spent + left * rate; };
   if (outlook.tied || !outlook.possible) {
     const double seconds = with(rates.both);
@@ -90,6 +96,12 @@ std::string to_text(const Prediction& prediction, const ProbedRun& probe, double
     text +=
         "             nothing pressed yet: windows in contact may cost more; a longer --probe "
         "sees them\n";
+  const double fields = fields_seconds(probe, end - probe.begin);
+  if (fields > 0.1 * prediction.seconds)
+    text += fmt::format(
+        "  fields     about {} of that to write their files; output.fields.every: a "
+        "larger number takes less\n",
+        time_words(fields));
   text += fmt::format("  memory     about {:.0f} MiB in {} processes\n", memory_mib, processes);
   return text;
 }

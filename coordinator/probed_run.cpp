@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "base/error.hpp"
 #include "coordinator/controller.hpp"
 #include "coordinator/metered_body.hpp"
 #include "coordinator/record/observer.hpp"
+#include "coordinator/record/vtk_fields.hpp"
 
 namespace abut {
 
@@ -38,15 +45,43 @@ bool presses(const WindowReport& report) {
   });
 }
 
-/// Notes what windows cost.
+/// A folder of this user alone, which is gone at the end.
+class PassingFolder {
+ public:
+  PassingFolder() {
+    std::error_code ignored;
+    std::string name = (std::filesystem::temp_directory_path(ignored) / "abut-XXXXXX").string();
+    if (!ignored && mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~PassingFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }  // empty: none could be made
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Notes what windows cost, and states of fields beside them.
 class Notes : public Observer {
  public:
+  Notes(const Scene& scene, const std::vector<Subdomain*>& bodies) {
+    const std::optional<FieldOutputSpec>& wanted = scene.output.field_output;
+    if (!wanted || folder_.path().empty()) return;
+    fields_.emplace(folder_.path(), bodies, wanted->every);
+    probe.states_apart = wanted->every * scene.time.window;
+  }
   void on_start(const RunStart& start) override {
     probe.begin = probe.reached = start.begin;
+    write([&] { fields_->on_start(start); });
     last_ = SteadyClock::now();
   }
   void on_window(const WindowReport& report) override {
     const double wall = seconds_since(last_);
+    write([&] { fields_->on_window(report); });
     last_ = SteadyClock::now();
     probe.reached = report.window.end;
     if (report.window.length() <= 0.0) return;
@@ -65,6 +100,24 @@ class Notes : public Observer {
   std::atomic<int> ended = 0, pressed = 0;  // windows, for who watches the clock
 
  private:
+  /// A folder that is full is none of the run's, which may write elsewhere.
+  void write(const std::function<void()>& part) {
+    if (!fields_) return;
+    const SteadyClock::time_point began = SteadyClock::now();
+    try {
+      part();
+    } catch (const RunError&) {
+      fields_.reset();
+      return;
+    }
+    written_ += seconds_since(began);
+    const double states = 1.0 + std::floor((probe.reached - probe.begin) / probe.states_apart);
+    probe.state_wall = written_ / states;
+  }
+
+  PassingFolder folder_;
+  std::optional<VtkFields> fields_;
+  double written_ = 0.0;  // [s] of the clock
   SteadyClock::time_point last_;
 };
 
@@ -72,7 +125,7 @@ class Notes : public Observer {
 
 ProbedRun probe_run(const Scene& scene, const std::vector<Subdomain*>& bodies, double seconds,
                     std::atomic<bool>& stop, const std::atomic<bool>& interrupted, bool touches) {
-  Notes notes;
+  Notes notes(scene, bodies);
   BodyMeter meter(bodies.size());
   const std::vector<std::unique_ptr<Subdomain>> measured = metered(bodies, meter);
   std::vector<Subdomain*> all;

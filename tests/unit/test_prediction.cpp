@@ -55,6 +55,20 @@ TEST(Prediction, OfWhatNothingTouchesGoesOnAsInTheLastHalf) {
   EXPECT_EQ(out->low, out->high);
 }
 
+/// Of 98 s to come a state of fields is written every 2 s; one that takes long is named.
+TEST(Prediction, CountsTheWritingOfFields) {
+  ProbedRun probe = probe_of({free_window(0.1), free_window(0.1)});
+  probe.state_wall = 0.5;
+  probe.states_apart = 2.0;
+  const std::optional<Prediction> out = predict(probe, 100.0, 0.0, {});
+  ASSERT_TRUE(out);
+  EXPECT_NEAR(out->seconds, 0.2 + 98 * 0.1 + 49 * 0.5, rounding * 100);
+  EXPECT_NE(to_text(*out, probe, 100.0, 1.0, 1).find("fields     about 25 s"), std::string::npos);
+  probe.state_wall = 1.0e-3;
+  const std::optional<Prediction> quick = predict(probe, 100.0, 0.0, {});
+  EXPECT_EQ(to_text(*quick, probe, 100.0, 1.0, 1).find("fields"), std::string::npos);
+}
+
 TEST(Prediction, LiesBetweenContactForNoTimeAndForAllTime) {
   const ProbedRun probe =
       probe_of({free_window(0.1), free_window(0.1), closed_window(0.4, 2), closed_window(0.4, 2)});
