@@ -331,8 +331,8 @@ PortKernel Body::probe(const Probing& asked) {
   const int own[] = {asked.port};
   const std::span<const int> seen = asked.seen.empty() ? std::span<const int>(own) : asked.seen;
   const bool joined = interior_->support(index(asked.port)) == ForceSupport::step;
-  PortKernel kernel =
-      describe().quasi_static && joined ? probe_statics(asked, seen) : probe_dynamics(asked, seen);
+  const bool statics = describe().quasi_static && (joined || !describe().loose.empty());
+  PortKernel kernel = statics ? probe_statics(asked, seen) : probe_dynamics(asked, seen);
   const double compliance = asked.seen.empty() ? probed->compliance(index(asked.port)) : 0.0;
   if (compliance > 0.0)
     for (const double value : asked.patterns) kernel.compliance.push_back(compliance * value);
@@ -422,6 +422,7 @@ PortKernel Body::probe_statics(const Probing& asked, std::span<const int> seen) 
     see(kernel.displacement);
   }
   kernel.displacement.resize(index(count) * kernel.per_step(), 0.0);
+  if (kernel.support == ForceSupport::nodal) kernel.begin.resize(kernel.displacement.size(), 0.0);
   std::ranges::fill(force, 0.0);
   for (Eigen::Index k = 0; k < place.size(); ++k) {
     place.setUnit(k);

@@ -14,18 +14,37 @@ namespace {
 /// Of a substep: times nearer to its end than this are its end, rounded.
 constexpr double force_rounding = 1.0e-6;
 
+/// How much of a line's begin is not where the one before has ended, of sides that step alike
+/// [M.166]: what alternates from step to step is gone after a hundred.
+constexpr double forgotten = 0.01;
+
+/// [N] A force that is a line in each of some steps, on one value.
+struct Line {
+  double mean = 0.0, end = 0.0;
+  /// Returns how much the force rises in the step that has this mean.
+  double go_on(double next, double forgets) {
+    double rise = next - mean;  // from half the way between both means
+    if (forgets < 1.0) rise = 2.0 * (next - std::lerp(end, 0.5 * (mean + next), forgets));
+    mean = next;
+    end = next + 0.5 * rise;
+    return rise;
+  }
+};
+
 }  // namespace
 
-void PortForces::join(std::size_t port, const std::vector<std::size_t>& massless) {
+void PortForces::join(std::size_t port, const std::vector<std::size_t>& massless, bool alike) {
   joined_.push_back(port);
+  forgets_.resize(forgets_.size() + massless.size(), alike ? forgotten : 1.0);
   light_.insert(light_.end(), massless.begin(), massless.end());
 }
 
 void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substeps& grid,
-                        std::span<const double> light_before) {
+                        const Left& before) {
   grid_ = grid;
-  light_before_.assign(light_before.begin(), light_before.end());
-  light_before_.resize(light_.size(), 0.0);
+  before_ = before;
+  before_.mean.resize(light_.size(), 0.0);
+  before_.end.resize(light_.size(), 0.0);
   forces_.clear();
   swings_.clear();
   ends_.clear();
@@ -42,7 +61,8 @@ void PortForces::impose(const std::vector<BoundaryData>& boundary, const Substep
     }
   }
   // Means that end leave slopes behind.
-  if (std::ranges::any_of(light_before_, [](double force) { return force != 0.0; }))
+  const auto acts = [](double force) { return force != 0.0; };
+  if (std::ranges::any_of(before_.mean, acts) || std::ranges::any_of(before_.end, acts))
     forces_.resize(index(grid_.count + 1) * map_.values(), 0.0);
   lay_slopes(boundary);
 }
@@ -115,11 +135,15 @@ void PortForces::add(const Waveform& imposed, const double* values, bool first, 
   }
 }
 
-void PortForces::light_means(int i, std::vector<double>& out) const {
-  out.assign(light_.size(), 0.0);
-  if (acts())
-    for (std::size_t k = 0; k < out.size(); ++k)
-      out[k] = forces_[index(i) * map_.values() + light_[k]];
+void PortForces::leave(int i, Left& out) const {
+  out.mean.assign(light_.size(), 0.0);
+  out.end.assign(light_.size(), 0.0);
+  if (!acts()) return;
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    const std::size_t here = index(i) * light_.size() + k;
+    out.mean[k] = forces_[index(i) * map_.values() + light_[k]];
+    if (forgets_[k] < 1.0) out.end[k] = out.mean[k] + levels_[here] + 0.5 * rises_[here];
+  }
 }
 
 /// What has no mass would jump with forces that are constant in steps, and each jump would take
@@ -137,11 +161,12 @@ void PortForces::lay_slopes(const std::vector<BoundaryData>& boundary) {
 }
 
 void PortForces::follow_own_steps() {
-  for (int i = 1; i <= grid_.count; ++i)
-    for (std::size_t k = 0; k < light_.size(); ++k) {
-      const auto mean = [&](int at) { return forces_[index(at) * map_.values() + light_[k]]; };
-      rises_[index(i) * light_.size() + k] = mean(i) - (i == 1 ? light_before_[k] : mean(i - 1));
-    }
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    Line line{before_.mean[k], before_.end[k]};
+    for (int i = 1; i <= grid_.count; ++i)
+      rises_[index(i) * light_.size() + k] =
+          line.go_on(forces_[index(i) * map_.values() + light_[k]], forgets_[k]);
+  }
 }
 
 /// A partner of longer steps has forces that are constant in those: lines in its steps, not in the
@@ -159,7 +184,11 @@ void PortForces::follow_steps_of(const std::vector<Waveform>& imposed, std::size
   const std::size_t first = map_.first(port), width = map_.width(port);
   for (std::size_t k = 0; k < light_.size(); ++k) {
     if (light_[k] < first || light_[k] >= first + width) continue;
-    const auto mean = [&](std::size_t at) { return only->f[at * width + light_[k] - first]; };
+    Line line{before_.mean[k], before_.end[k]};
+    slopes_.assign(only->size(), 0.0);
+    for (std::size_t s = 1; s < only->size(); ++s)
+      slopes_[s] = line.go_on(only->f[s * width + light_[k] - first], forgets_[k]) /
+                   (only->time[s] - only->time[s - 1]);
     for (int i = 1; i <= grid_.count; ++i) {
       const double begin = i == 1 ? grid_.begin : grid_.time(i - 1), end = grid_.time(i);
       double rise = 0.0, level = 0.0;
@@ -167,9 +196,8 @@ void PortForces::follow_steps_of(const std::vector<Waveform>& imposed, std::size
         const double from = only->time[s - 1], until = only->time[s];
         const double shared_from = std::max(from, begin), shared_until = std::min(until, end);
         if (shared_until <= shared_from) continue;
-        const double slope = (mean(s) - (s == 1 ? light_before_[k] : mean(s - 1))) / (until - from);
-        rise += slope * (shared_until - shared_from);
-        level += slope * 0.5 * (shared_from + shared_until - from - until) *
+        rise += slopes_[s] * (shared_until - shared_from);
+        level += slopes_[s] * 0.5 * (shared_from + shared_until - from - until) *
                  (shared_until - shared_from) / (end - begin);
       }
       rises_[index(i) * light_.size() + k] = rise;

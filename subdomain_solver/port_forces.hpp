@@ -16,22 +16,26 @@ namespace abut {
 /// values at their ends, equal to those of the waveform where it is sampled there, else means over
 /// the dual cells [M.8], so that the impulse is exact; linear in between. Lists of values are those
 /// of PortMap. On ports that are joined, forces are constant in every substep: means over it
-/// [M.107]; on nodes without mass, linear in the partner's steps [M.164].
+/// [M.107]; on nodes without mass, linear in the partner's steps [M.164], [M.166].
 class PortForces final : public Load {
  public:
   /// The map must outlive the load.
   explicit PortForces(const PortMap& map) : map_(map) {}
 
-  /// What is imposed over a window that the body divides like this. light_before [N] (light): the
-  /// means over the substep before it.
+  /// What the substep before a window has left on nodes without mass [N] (light): the mean of the
+  /// force, and what it came to.
+  struct Left {
+    std::vector<double> mean, end;
+  };
+  /// What is imposed over a window that the body divides like this.
   void impose(const std::vector<BoundaryData>& boundary, const Substeps& grid,
-              std::span<const double> light_before = {});
+              const Left& before = {});
   /// From now on, forces on this port are those of joined sides; massless: those of its values that
-  /// belong to nodes without mass.
-  void join(std::size_t port, const std::vector<std::size_t>& massless);
+  /// belong to nodes without mass; alike: both sides take the same steps.
+  void join(std::size_t port, const std::vector<std::size_t>& massless, bool alike);
   const std::vector<std::size_t>& light() const { return light_; }  // of all joined ports
-  /// [N] (light) over substep i of the window; zeros where nothing is imposed.
-  void light_means(int i, std::vector<double>& out) const;
+  /// After substep i of the window; zeros where nothing is imposed.
+  void leave(int i, Left& out) const;
   /// The substep that begins, from 1: of joined ports at() tells its forces.
   void enter(int substep) { substep_ = substep; }
   bool acts() const { return !forces_.empty(); }
@@ -71,11 +75,13 @@ class PortForces final : public Load {
   std::vector<double> mean_;    // [N] of a waveform over a dual cell
   std::vector<double> instant_;
   mutable std::vector<double> now_;
-  std::vector<std::size_t> joined_;   // ports
-  std::vector<std::size_t> light_;    // values of joined ports on nodes without mass
-  std::vector<double> light_before_;  // [N] (light)
-  std::vector<double> rises_;         // [N] (substeps + 1, light): of the slope, from begin to end
-  std::vector<double> levels_;        // [N] the same: beside the mean in the middle of the substep
+  std::vector<std::size_t> joined_;  // ports
+  std::vector<std::size_t> light_;   // values of joined ports on nodes without mass
+  std::vector<double> forgets_;      // (light)
+  Left before_;
+  std::vector<double> rises_;   // [N] (substeps + 1, light): of the slope, from begin to end
+  std::vector<double> slopes_;  // [N/s] of a partner's steps, of one value
+  std::vector<double> levels_;  // [N] the same: beside the mean in the middle of the substep
   int substep_ = 1;
 };
 

@@ -71,10 +71,11 @@ SolidInterior::SolidInterior(std::string name, Parts parts, const std::vector<Po
     const bool conserves = parts_.scheme.integrator->able().lag == nullptr;
     for (std::size_t p = 0; p < ports_.size(); ++p)
       if (joined_[p])
-        port_forces_->join(p, conserves
-                                  ? massless_values(parts_.problem->model->massless(), ports_[p],
-                                                    port_map_->first(p), description_.dim)
-                                  : std::vector<std::size_t>());
+        port_forces_->join(p,
+                           conserves ? massless_values(parts_.problem->model->massless(), ports_[p],
+                                                       port_map_->first(p), description_.dim)
+                                     : std::vector<std::size_t>(),
+                           ports[p].alike);
     if (joins_) description_.can.kernel = true;
     description_.can.impulse = joins_ && !description_.quasi_static;
     places_.assign(port_map_->values(), 0.0);
@@ -254,7 +255,8 @@ void SolidInterior::state_of_motion(Archive& archive) {
   archive.field("begun", state_.begun);
   archive.field("port_force", state_.port_force);
   archive.field("port_work", state_.port_work);
-  archive.field("light_mean", state_.light_mean);
+  archive.field("light_mean", state_.light.mean);
+  archive.field("light_end", state_.light.end);
   archive.field("turned", state_.turned);
   if (crossings_) archive.field("crossed", state_.crossed);
 }
@@ -273,7 +275,7 @@ std::optional<Failed> SolidInterior::begin(const Window& window) {
     if (failed) return failed;
   }
   if (port_forces_ != nullptr) {
-    port_forces_->impose(window.request.boundary, window.grid, state_.light_mean);
+    port_forces_->impose(window.request.boundary, window.grid, state_.light);
     port_forces_->enter(1);
   }
   substep_ = 0;

@@ -25,9 +25,8 @@
 
 namespace abut {
 
-/// A solid in one, two or three dimensions: a mesh, the rung of the fidelity ladder whose
-/// coordinates move it, what acts on it, an integrator, and ports, sides or node sets of the mesh.
-/// Ports take forces; linear bodies answer for their kernels; ports without mass meet obstacles.
+/// A solid: a mesh, the rung of the fidelity ladder that moves it, what acts on it, an integrator,
+/// and ports that take forces. Linear ones answer for their kernels; massless ones meet obstacles.
 class SolidInterior final : public Interior,
                             private Probed,
                             private Obstructed,
@@ -39,6 +38,7 @@ class SolidInterior final : public Interior,
     bool tied = false;
     bool touched = false;         // something may touch it
     bool joined = false;          // tied to another surface: forces are constant in a step
+    bool alike = true;            // to bodies that step as this one does
     EmbeddedSurface inside = {};  // of a body that overlaps this one
   };
   struct Scheme {
@@ -135,7 +135,7 @@ class SolidInterior final : public Interior,
     bool begun = false;              // accelerations and forces of the start are there
     std::vector<double> port_force;  // [N] (port values) that acts now
     double port_work = 0.0;          // [J] done by forces on the ports
-    std::vector<double> light_mean;  // [N] (PortForces::light) over the last substep
+    PortForces::Left light;          // by joined sides, after the last substep
     double turned = 0.0;             // [rad] largest rotation at records, where the law is linear
     double crossed = 0.0;            // most pairs of facets that crossed each other, at records
   };

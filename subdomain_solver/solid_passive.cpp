@@ -217,7 +217,7 @@ double SolidInterior::enter() {
   before += work;
   motion.force.assign(motion.v.size(), 0.0);
   std::ranges::fill(state_.port_force, 0.0);
-  state_.light_mean.clear();
+  state_.light = {};
   if (surfaces_ != nullptr) surfaces_->let_go();
   // What crushed cells store anew comes from motion.
   keep_momenta(momentum, before - guard, [this] { return moving_energy(); });
@@ -237,7 +237,7 @@ double SolidInterior::come_to_rest() {
   motion.a.clear();
   state_.begun = true;
   std::ranges::fill(state_.port_force, 0.0);
-  state_.light_mean.clear();
+  state_.light = {};
   if (surfaces_ != nullptr) surfaces_->let_go();
   return 0.0;
 }
@@ -253,7 +253,7 @@ std::optional<Failed> SolidInterior::stand_still(double time) {
   motion.stored = here.stored;
   if (port_forces_ != nullptr) port_forces_->impose({}, {});
   std::ranges::fill(state_.port_force, 0.0);
-  state_.light_mean.clear();
+  state_.light = {};
   state_.time = time;
   if (port_map_) port_map_->displacement(motion.q, places_);
   return std::nullopt;
@@ -370,7 +370,7 @@ std::optional<Failed> SolidInterior::restart(double time, double& work) {
   if (MasslessLayer* layer = parts_.scheme.integrator->able().layer) layer->release();
   if (auto failed = parts_.scheme.integrator->begin(motion, time)) return failed;
   std::ranges::fill(state_.port_force, 0.0);
-  state_.light_mean.clear();
+  state_.light = {};
   state_.time = time;
   if (parts_.reduced) return std::nullopt;
   for (const Prescribed& p : parts_.problem->supports)

@@ -95,7 +95,7 @@ void SolidInterior::follow_ports(double time) {
   before_.swap(places_);
   port_map_->displacement(state_.motion.q, places_);
   const bool pressed = parts_.problem->contact != nullptr;
-  port_forces_->light_means(substep_, state_.light_mean);
+  port_forces_->leave(substep_, state_.light);
   if (!port_forces_->acts() && !pressed) return;
   port_forces_->at(time, now_);
   const auto pressed_in = [this] { return surfaces_ != nullptr ? surfaces_->pressed_in() : 0.0; };

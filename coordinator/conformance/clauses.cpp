@@ -23,7 +23,8 @@ Verdict judged(const char* name, const char* says, const std::function<std::stri
 
 namespace {
 
-/// What a clause left undefined, a window that failed, is no state to go on from.
+/// A body that loads have carried far off answers light forces by what is rounded. And what a
+/// clause left undefined, a window that failed, is no state to go on from.
 void return_to_saved(BodyTrial& trial) {
   try {
     trial.restore();
@@ -46,7 +47,7 @@ void hold(std::span<const Clause> clauses, const Wanted& wanted, BodyTrial& tria
       trial.save();
       return clause.hold(trial);
     }));
-    if (!verdicts.back().kept) return_to_saved(trial);
+    return_to_saved(trial);
   }
 }
 

@@ -142,7 +142,7 @@ std::vector<SolidInterior::PortNodes> make_ports(const BodySpec& spec, const Pla
                      end < 0    ? port.side
                      : end == 0 ? "left"
                                 : "right",
-                     port.tied, touched, joined});
+                     port.tied, touched, joined, role.alike});
   }
   return ports;
 }

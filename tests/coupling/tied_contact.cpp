@@ -1,6 +1,7 @@
 // Goal: contact does not know whether a body is whole or of tied parts. Oracle: the undivided body,
 // step by step the same equations where all bodies are linear and implicit.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -375,7 +376,8 @@ TEST(TiedContact, RimsWithoutMassTakeLittle) {
           ASSERT_TRUE(run->completed());
           const double lost = -run->measure("energy.total.relative_drift_end");
           EXPECT_GT(lost, 0.0);
-          EXPECT_LT(lost, 2.0e-3);
+          // Sides that step alike begin a line where the one before has ended: 7e-6 measured.
+          EXPECT_LT(lost, ratio == 1 ? 5.0e-5 : 2.0e-3);
           if (before > 0.0) {
             EXPECT_LT(lost, 0.27 * before);
           }
@@ -384,6 +386,21 @@ TEST(TiedContact, RimsWithoutMassTakeLittle) {
       }
     }
   }
+}
+
+/// In 500 steps of several transits of a cell, whose modes steps do not resolve, rims took 29 % of
+/// the energy by lines through the last two means. A line that goes on where the one before has
+/// ended, but for a hundredth, left .18 %.
+TEST(TiedContact, RimsWithoutMassTakeLittleInLongSteps) {
+  std::string text = halves_in_flight("linear_elastic", "newmark", 1.6e-3, 1);
+  for (const std::array<const char*, 2>& change :
+       {std::array{"end: 0.04", "end: 0.8"}, {"window: 4.0e-4", "window: 1.6e-3"}})
+    text.replace(text.find(change[0]), std::string(change[0]).size(), change[1]);
+  const auto run = run_text(text);
+  ASSERT_TRUE(run->completed());
+  EXPECT_EQ(run->end.given_up.windows, 0);
+  EXPECT_LT(-run->measure("energy.total.relative_drift_end"), 5.0e-3);
+  EXPECT_LT(run->measure("energy.total.relative_drift_end"), 1.0e-9);  // never gained
 }
 
 /// Two joined halves of unlike meshes and steps fall on a floor, a corner first and then flat:

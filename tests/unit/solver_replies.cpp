@@ -194,14 +194,18 @@ std::size_t compare(const MakePlayer& make, unsigned seed) {
   return expected.size();
 }
 
-/// Over all that are not refused; `seeds` of each. Tells how many combinations there were.
+/// Over all that are not refused; `seeds` of each. Tells how many combinations there were. A
+/// request may have no answer, as random forces wedge surfaces between random obstacles; that is
+/// compared as well, but does not count.
 int compare_all(const std::vector<std::pair<std::string, MakePlayer>>& players, unsigned seeds) {
   int compared = 0;
   for (const auto& [name, make] : players) {
-    for (unsigned seed = 1; seed <= seeds; ++seed) {
+    unsigned answered = 0;
+    for (unsigned seed = 1; seed <= 3 * seeds && answered < seeds; ++seed) {
       SCOPED_TRACE(fmt::format("{}, seed {}", name, seed));
-      EXPECT_GT(compare(make, seed), 10u);
+      if (compare(make, seed) > 10) ++answered;
     }
+    EXPECT_EQ(answered, seeds) << name;
     ++compared;
   }
   return compared;
@@ -267,8 +271,8 @@ struct Touched {
           called, dim, mesh, law, scheme, dim == 2 ? "top" : "front", port,
           dim == 2 ? "bottom" : "back");
     };
-    const std::string text = fmt::format("bodies: {{{}}}\n",
-                                         block("it", tied ? ", root: {side: left}" : ""));
+    const std::string text =
+        fmt::format("bodies: {{{}}}\n", block("it", tied ? ", root: {side: left}" : ""));
     BodyContext context;
     context.ports.push_back({.port = "face", .touches = true, .partners = {}});
     if (tied) context.ports.push_back({.port = "root", .tied = true, .partners = {}});
