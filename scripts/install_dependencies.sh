@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs the Debian packages of the named groups of packages.txt that are missing, and only those.
 #   usage: scripts/install_dependencies.sh GROUP...
-#   groups: build, test, bench, pictures, runtime; cholmod, exodus (options of WITH)
+#   groups: build, test, bench, pictures, runtime; cholmod, exodus, petsc (options of WITH)
 # DEPENDENCIES=installed skips the check: for systems without apt, once the list was installed by
 # hand.
 set -eu

@@ -23,6 +23,7 @@
 #include "messaging/zmq_dealer.hpp"
 #include "messaging/zmq_group.hpp"
 #include "subdomain_solver/make/body_spec.hpp"
+#include "subdomain_solver/solve/petsc_solver.hpp"
 
 namespace {
 
@@ -134,6 +135,7 @@ std::optional<int> read_command_line(int argc, char** argv, Command& command) {
 
 int main(int argc, char** argv) {
   const abut::FlushedDenormals flushed;  // also of threads that bodies start
+  abut::join_processes(argv[0]);
   abut::end_in_words_without_memory("abut-solver");
   Command command;
   try {

@@ -158,13 +158,19 @@ void SolidInterior::find_surfaces() {
     const PortGeometry& geometry = description_.ports[p].geometry;
     const FeModel& model = *parts_.model;
     const bool reduced = parts_.problem->model != &model;  // whose ports have mass
-    if (geometry.facets.empty() || !may_touch_[p] || reduced || parts_.massive_surface) continue;
+    if (geometry.facets.empty() || !may_touch_[p]) continue;
     const PortSurface port{p, port_map_->first(p), &geometry, nodes};
     touched_.push_back({port, ports_[p].name, model.options().thickness});
+    if (reduced || parts_.massive_surface) continue;
     surfaces.push_back({port, {}, description_.stabilised});
     SurfaceContact::Surface& surface = surfaces.back();
     for (const std::int32_t node : nodes) surface.frames.push_back(model.frame(node));
   }
+  for (std::string& name : touch_measure_names(touched_))
+    description_.measures.push_back(std::move(name));
+  if (!touched_.empty())
+    for (FieldInfo& field : touch_fields(!surfaces.empty()))
+      description_.fields.push_back(std::move(field));
   if (surfaces.empty()) return;
   std::optional<Interference> interference;
   if (parts_.pressed_over) interference.emplace(*parts_.pressed_over);
@@ -172,9 +178,6 @@ void SolidInterior::find_surfaces() {
                                                   std::move(interference));
   surfaces_ = contact.get();
   contact_ = std::move(contact);
-  for (std::string& name : touch_measure_names(touched_))
-    description_.measures.push_back(std::move(name));
-  for (FieldInfo& field : touch_fields()) description_.fields.push_back(std::move(field));
   description_.can.obstacle = description_.can.yielding = description_.can.friction = true;
   description_.can.bands = true;
   description_.can.neighbours = joins_;
@@ -429,7 +432,7 @@ std::vector<double> SolidInterior::measure() {
         *parts_.model, *parts_.scheme.integrator->able().statics, state_.motion);
     out.insert(out.end(), more.begin(), more.end());
   }
-  if (surfaces_ != nullptr) touch_measures(touched_, *surfaces_, state_.port_force, places_, out);
+  touch_measures(touched_, surfaces_, state_.port_force, places_, out);
   if (crossings_) out.push_back(state_.crossed);
   return out;
 }
@@ -447,7 +450,7 @@ std::vector<FieldValues> SolidInterior::fields() {
   if (parts_.reactions) values.push_back(nodal_reactions());
   if (touched_.empty()) return values;
   for (FieldValues& field :
-       touch_field_values(touched_, *surfaces_, index(parts_.model->mesh().node_count()),
+       touch_field_values(touched_, surfaces_, index(parts_.model->mesh().node_count()),
                           state_.port_force, places_))
     values.push_back(std::move(field));
   return values;

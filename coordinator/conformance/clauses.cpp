@@ -23,8 +23,7 @@ Verdict judged(const char* name, const char* says, const std::function<std::stri
 
 namespace {
 
-/// A body that loads have carried far off answers light forces by what is rounded. And what a
-/// clause left undefined, a window that failed, is no state to go on from.
+/// What a clause left undefined, a window that failed, is no state to go on from.
 void return_to_saved(BodyTrial& trial) {
   try {
     trial.restore();
@@ -47,7 +46,7 @@ void hold(std::span<const Clause> clauses, const Wanted& wanted, BodyTrial& tria
       trial.save();
       return clause.hold(trial);
     }));
-    return_to_saved(trial);
+    if (!verdicts.back().kept) return_to_saved(trial);
   }
 }
 

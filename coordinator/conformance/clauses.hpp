@@ -21,6 +21,8 @@ struct Clause {
 
 /// What windows must be, whatever acts on the body.
 std::span<const Clause> clauses_of_windows();
+/// What probes must tell.
+std::span<const Clause> clauses_of_kernels();
 /// What forces must do.
 std::span<const Clause> clauses_of_forces();
 /// What motion must be: velocities, and points that forces act on.

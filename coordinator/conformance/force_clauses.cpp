@@ -303,12 +303,16 @@ std::string kernel(BodyTrial& trial) {
 
 constexpr Clause clauses_on_forces[] = {
     {"momentum", "impulses of forces are the change of momentum, for any pair of steps", impulse},
-    {"kernel", "ports give way to forces as kernels say; a probe leaves the state", kernel},
     {"work", "work on a port is force times way, and the energy of the body", work},
+};
+
+constexpr Clause clauses_on_kernels[] = {
+    {"kernel", "ports give way to forces as kernels say; a probe leaves the state", kernel},
 };
 
 }  // namespace
 
+std::span<const Clause> clauses_of_kernels() { return clauses_on_kernels; }
 std::span<const Clause> clauses_of_forces() { return clauses_on_forces; }
 
 }  // namespace abut

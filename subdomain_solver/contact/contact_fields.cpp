@@ -120,19 +120,20 @@ std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& 
   return names;
 }
 
-void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact& contact,
+void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact* contact,
                     std::span<const double> forces, std::span<const double> places,
                     std::vector<double>& out) {
-  const SeenGaps seen = contact.seen_gaps();
   std::vector<bool> held;  // (points)
   for (const TouchedSurface& s : surfaces) {
     const Touch t = touch_of(s, forces, places);
     const std::size_t dim = index(s.geometry->dim);
     double area = 0.0, stick_area = 0.0, force = 0.0, square = 0.0;
     held.assign(t.pressure.size(), false);
-    seen.visit(s.port, s.nodes.size(), [&held](std::size_t point, double, bool sticks) {
-      if (sticks) held[point] = true;
-    });
+    if (contact != nullptr)
+      contact->seen_gaps().visit(s.port, s.nodes.size(),
+                                 [&held](std::size_t point, double, bool sticks) {
+                                   if (sticks) held[point] = true;
+                                 });
     std::vector<double> centre(dim, 0.0);
     const auto each = [&](const auto& visit) {
       for (std::size_t a = 0; a < t.pressure.size(); ++a)
@@ -156,31 +157,34 @@ void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceCo
   }
 }
 
-std::vector<FieldInfo> touch_fields() {
-  return {{"contact_pressure", FieldPlace::nodes, 1},
-          {"contact_gap", FieldPlace::nodes, 1},
-          {"contact_status", FieldPlace::nodes, 1}};
+std::vector<FieldInfo> touch_fields(bool finds) {
+  std::vector<FieldInfo> fields = {{"contact_pressure", FieldPlace::nodes, 1},
+                                   {"contact_status", FieldPlace::nodes, 1}};
+  if (finds) fields.push_back({"contact_gap", FieldPlace::nodes, 1});
+  return fields;
 }
 
 std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
-                                            const SurfaceContact& contact, std::size_t nodes,
+                                            const SurfaceContact* contact, std::size_t nodes,
                                             std::span<const double> forces,
                                             std::span<const double> places) {
-  const SeenGaps seen = contact.seen_gaps();
-  std::vector<FieldValues> out(3, FieldValues(nodes, 0.0));
+  std::vector<FieldValues> out(contact != nullptr ? 3 : 2, FieldValues(nodes, 0.0));
   for (const TouchedSurface& s : surfaces) {
+    if (contact != nullptr)
+      contact->seen_gaps().visit(s.port, s.nodes.size(),
+                                 [&](std::size_t point, double gap, bool sticks) {
+                                   double& status = out[1][s.nodes[point]];
+                                   double& least = out[2][s.nodes[point]];
+                                   // of all partners
+                                   least = status == 0.0 ? gap : std::min(least, gap);
+                                   status = std::max(status, sticks ? 3.0 : 1.0);
+                                 });
     const Touch t = touch_of(s, forces, places);
-    seen.visit(s.port, s.nodes.size(), [&](std::size_t point, double gap, bool sticks) {
-      double& least = out[1][s.nodes[point]];
-      double& status = out[2][s.nodes[point]];
-      least = status == 0.0 ? gap : std::min(least, gap);  // of all partners
-      status = std::max(status, sticks ? 3.0 : 1.0);
-    });
     for (std::size_t a = 0; a < t.pressure.size(); ++a) {
       if (t.pressure[a] == 0.0) continue;
       out[0][s.nodes[a]] = t.pressure[a];
       if (t.pressure[a] > least_share * t.most)
-        out[2][s.nodes[a]] = std::max(2.0, out[2][s.nodes[a]]);
+        out[1][s.nodes[a]] = std::max(2.0, out[1][s.nodes[a]]);
     }
   }
   return out;

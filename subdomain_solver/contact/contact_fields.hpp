@@ -21,17 +21,18 @@ struct TouchedSurface : PortSurface {
 /// (of the side that finds contact; else 0); contact.spread [m], the root of the mean square
 /// distance of the pressure from its centre.
 std::vector<std::string> touch_measure_names(const std::vector<TouchedSurface>& surfaces);
-/// Their values, of forces [N] and displacements [m] of the ports (port values).
-void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact& contact,
+/// Their values, of forces [N] and displacements [m] of the ports (port values). `contact`: of a
+/// body that finds contact; else null.
+void touch_measures(const std::vector<TouchedSurface>& surfaces, const SurfaceContact* contact,
                     std::span<const double> forces, std::span<const double> places,
                     std::vector<double>& out);
 
-/// At the nodes of the mesh: contact_pressure [Pa], contact_gap [m] of the side that finds contact
-/// (0 where it finds nothing near), contact_status (0 nothing near, 1 near, 2 pressed, 3 pressed
-/// and held by friction, told of the side that finds contact).
-std::vector<FieldInfo> touch_fields();
+/// At the nodes of the mesh: contact_pressure [Pa], contact_status (0 nothing near, 1 near, 2
+/// pressed, 3 pressed and held by friction, told of the side that finds contact), and of a body
+/// that `finds` contact contact_gap [m] (0 where it finds nothing near).
+std::vector<FieldInfo> touch_fields(bool finds);
 std::vector<FieldValues> touch_field_values(const std::vector<TouchedSurface>& surfaces,
-                                            const SurfaceContact& contact, std::size_t nodes,
+                                            const SurfaceContact* contact, std::size_t nodes,
                                             std::span<const double> forces,
                                             std::span<const double> places);
 

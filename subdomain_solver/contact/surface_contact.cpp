@@ -58,6 +58,8 @@ void SurfaceContact::state(Archive& archive) {
 void SurfaceContact::let_go() {
   for (std::vector<double>* list : {&pressed_, &reactions_, &turned_, &slid_, &shears_, &anchored_})
     std::ranges::fill(*list, 0.0);
+  kept_gaps_ = {};
+  restored_ = true;  // what is seen is nothing, until rows are made again
   if (interference_) interference_->end();
 }
 

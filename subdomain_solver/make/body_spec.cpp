@@ -33,7 +33,7 @@ void SolidShapeSpec::fields(Fields& f) {
              "places of the mesh's nodes, one expression in x, y, z per dimension: rounds, tapers "
              "or refines a part before it is placed, without stress");
   f.check(map.empty() || map.size() == index(dimension), "map",
-          fmt::format("has {} expressions", map.size()),
+          "has " + counted(map.size(), "expression"),
           fmt::format("Give {} expressions, one per dimension.", dimension));
   f.idle(dimension == 1, "map", "it is for bodies in two and three dimensions");
   const bool bar = std::holds_alternative<BarMeshSpec>(mesh);
@@ -417,8 +417,7 @@ void BodySpec::check_dimensions(Fields& f) const {
   for (const auto& [list, key] :
        {std::pair(&initial.displacement_field, "initial.displacement_field"),
         {&initial.velocity_field, "initial.velocity_field"}}) {
-    f.check(list->empty() || list->size() == dim, key,
-            fmt::format("has {} expressions", list->size()),
+    f.check(list->empty() || list->size() == dim, key, "has " + counted(list->size(), "expression"),
             fmt::format("Give {} expressions, one per dimension.", dim));
   }
 }

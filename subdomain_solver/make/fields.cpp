@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/counted.hpp"
 #include "base/index.hpp"
 #include "subdomain_solver/make/expression.hpp"
 #include "subdomain_solver/make/scheme.hpp"
@@ -14,7 +15,7 @@ namespace abut {
 
 VectorField field_of(const std::vector<std::string>& texts, int dim, const std::string& where) {
   if (texts.size() != index(dim)) {
-    throw InputError(fmt::format("has {} expressions", texts.size()), where,
+    throw InputError("has " + counted(texts.size(), "expression"), where,
                      fmt::format("Give {} expressions, one per dimension.", dim));
   }
   VectorField field;
@@ -90,8 +91,7 @@ std::vector<std::unique_ptr<Load>> make_loads(const BodySpec& spec, const Place&
                                               const FeModel& model) {
   // What stood under the weights of statics stands on under them: masses of a scheme, or of a
   // surface that gives its own to the nodes inside, would be others.
-  const bool stood =
-      spec.initial.after_statics && std::holds_alternative<FeModelSpec>(spec.model);
+  const bool stood = spec.initial.after_statics && std::holds_alternative<FeModelSpec>(spec.model);
   return all_loads(spec, place, model, [&](VectorField acceleration) {
     return stood ? BodyForce::of_statics(model, std::move(acceleration))
                  : std::make_unique<BodyForce>(model, std::move(acceleration), load_mass(spec));

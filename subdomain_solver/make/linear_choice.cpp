@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "subdomain_solver/fe/rigid_motions.hpp"
+#include "subdomain_solver/solve/petsc_solver.hpp"
 
 namespace abut {
 
@@ -46,6 +47,10 @@ LinearChoice iterated(double tolerance, std::function<CoarseMotions()> motions) 
           ", by conjugate gradients"};
 }
 
+LinearChoice by_petsc(double tolerance) {
+  return {[tolerance](Pivots) { return make_petsc_solver(tolerance); }, ", by PETSc"};
+}
+
 /// Whether factors of the body's matrix would fill the memory.
 bool is_large(const FeModel& model, const std::vector<int>& held,
               const std::vector<SolidInterior::PortNodes>& ports) {
@@ -60,6 +65,7 @@ bool is_large(const FeModel& model, const std::vector<int>& held,
 LinearChoice linear_choice(const EquationsSpec& spec) {
   if (const auto* chosen = std::get_if<ConjugateGradientsSpec>(&spec.linear))
     return iterated(chosen->tolerance, [] { return CoarseMotions(); });
+  if (const auto* chosen = std::get_if<PetscSpec>(&spec.linear)) return by_petsc(chosen->tolerance);
   return direct(nullptr);
 }
 
@@ -68,6 +74,7 @@ LinearChoice linear_choice(const EquationsSpec& spec, FeModel& model, const std:
   const auto motions = [&model, held] { return coarse_motions(model, held); };
   if (const auto* chosen = std::get_if<ConjugateGradientsSpec>(&spec.linear))
     return iterated(chosen->tolerance, motions);
+  if (const auto* chosen = std::get_if<PetscSpec>(&spec.linear)) return by_petsc(chosen->tolerance);
   const bool factors = std::holds_alternative<DirectSpec>(spec.linear);
   if (factors || !is_large(model, held, ports)) return direct(model.threads());
   return iterated(ConjugateGradientsSpec().tolerance, motions);

@@ -7,6 +7,7 @@
 
 #include "base/counted.hpp"
 #include "subdomain_solver/fe/element.hpp"
+#include "subdomain_solver/solve/petsc_solver.hpp"
 
 namespace abut {
 
@@ -43,7 +44,11 @@ void lattice_keys(Fields& f, std::size_t dim, std::vector<double>& lengths,
 }
 
 void round_keys(Fields& f, double& radius, int& core, int& layers) {
-  f.required("radius", radius, "m", "radius", positive);
+  f.required(
+      "radius", radius, "m",
+      "radius of the nodes on the surface: between them cells are flat, and a coarse mesh has "
+      "less volume than what is round",
+      positive);
   f.required("core", core, "", "number of elements along an edge of the inner square or cube",
              at_least(1));
   f.required("layers", layers, "", "number of layers of elements around it", at_least(1));
@@ -199,6 +204,11 @@ void ConjugateGradientsSpec::fields(Fields& f) {
              between(1.0e-15, 1.0e-2));
 }
 
+void PetscSpec::fields(Fields& f) {
+  f.optional("tolerance", tolerance, "", "residual relative to the right-hand side",
+             between(1.0e-15, 1.0e-2));
+}
+
 void EquationsSpec::fields(Fields& f) {
   f.optional("tolerance", tolerance, "",
              "residual of Newton's method, relative to the largest force in the balance",
@@ -206,6 +216,9 @@ void EquationsSpec::fields(Fields& f) {
   f.optional("max_iterations", max_iterations, "", "number of iterations after which a step fails",
              between(1, 1000));
   f.choice("linear", linear, "solver of linear equations", Presence::optional);
+  f.check(has_petsc() || !std::holds_alternative<PetscSpec>(linear), "linear",
+          "is petsc, which this build is without",
+          "Build it again with PETSc: make build WITH=petsc; or leave linear out.");
 }
 
 }  // namespace abut

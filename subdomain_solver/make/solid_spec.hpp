@@ -144,10 +144,15 @@ struct ConjugateGradientsSpec {
   double tolerance = 1.0e-10;
   void fields(Fields& f);
 };
+struct PetscSpec {
+  static constexpr std::string_view name = "petsc";
+  double tolerance = 1.0e-10;
+  void fields(Fields& f);
+};
 struct EquationsSpec {
   double tolerance = 1.0e-9;
   int max_iterations = 25;
-  std::variant<AutomaticSpec, DirectSpec, ConjugateGradientsSpec> linear;
+  std::variant<AutomaticSpec, DirectSpec, ConjugateGradientsSpec, PetscSpec> linear;
   void fields(Fields& f);
 };
 

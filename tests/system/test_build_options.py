@@ -95,7 +95,7 @@ class BuildOptions(unittest.TestCase):
         self.assert_uses("")
 
     def test_an_unknown_name_is_an_error_with_the_known_ones(self):
-        self.assert_refused(["'mumps'", "cholmod, exodus"], "mumps")
+        self.assert_refused(["'mumps'", "cholmod, exodus, petsc"], "mumps")
 
     def test_every_option_has_packages_to_install(self):
         listed = (ROOT / "scripts" / "packages.txt").read_text(encoding="utf-8").splitlines()

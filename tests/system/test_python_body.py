@@ -132,6 +132,27 @@ class Motion(PythonTest):
         self.succeed(self.end(body))
         self.assertEqual(self.summary()["state_hash"], self.summary(open_run)["state_hash"])
 
+    def test_a_key_that_does_not_fit_is_said_at_once(self):
+        keys, other = self.folder / "keys", self.folder / "other"
+        self.succeed(self.abut("keygen", keys, "mass"))
+        self.succeed(self.abut("keygen", other, "mass"))
+        (other / "coordinator.key").write_bytes((keys / "coordinator.key").read_bytes())
+        program = [sys.executable, PROGRAM, "--connect", self.endpoint, "--body", "mass"]
+        run = self.run_scene("--set", f"network.keys={keys}")
+        for more, words in (([], r"lets nobody in without a key\. Give --keys DIR|"
+                             r"asks for keys: --keys DIR"),
+                            (["--keys", other], "does not let this key in|asks for other keys")):
+            refused = self.end(self.start(*program, *more), 20.0)
+            self.assertIn(refused.returncode, (1, 2))
+            self.assertRegex(refused.stderr, words)
+        run.terminate()
+        self.end(run)
+        run = self.run_scene("--force")
+        refused = self.end(self.start(*program, "--keys", keys), 20.0)
+        self.assertRegex(refused.stderr, r"has no keys\. Give its run network\.keys|asks for other")
+        run.terminate()
+        self.end(run)
+
     def test_other_machines_need_keys_or_the_users_word(self):
         network = ["--connect", "tcp://machine.example:5555", "--body", "mass"]
         refused = self.start(sys.executable, PROGRAM, *network)

@@ -36,7 +36,7 @@ TEST_F(LaunchTest, SpawnedBodiesReachTheStateOfLocalOnes) {
 }
 
 TEST_F(LaunchTest, AConnectedBodyReachesTheStateOfALocalOneAndEndsWithCodeZero) {
-  scene_.network.endpoint = "tcp://127.0.0.1:47613";
+  scene_.network.endpoint = "tcp://127.0.0.1:27613";
   add_body("left");
   add_body("right");
   scene_.bodies[1].second.launch = ConnectLaunch{5.0};
@@ -81,12 +81,12 @@ TEST_F(LaunchTest, ASpawnedSolverThatNeverConnectsIsGivenUpAtTheStartupDeadline)
 
 TEST_F(LaunchTest, ABodyThatNobodyStartsIsNamedWithTheCommandThatIsMissing) {
   add_body("left");
-  scene_.network.endpoint = "tcp://127.0.0.1:47614";
+  scene_.network.endpoint = "tcp://127.0.0.1:27614";
   scene_.bodies[0].second.launch = ConnectLaunch{0.3};
   EXPECT_EQ(
       error_within(2.0, [this] { start(); }),
-      "body 'left' did not connect to tcp://127.0.0.1:47614 within 0.3 s | start `abut-solver "
-      "--connect tcp://127.0.0.1:47614 --body left`");
+      "body 'left' did not connect to tcp://127.0.0.1:27614 within 0.3 s | start `abut-solver "
+      "--connect tcp://127.0.0.1:27614 --body left`");
 }
 
 TEST_F(LaunchTest, ASolverThatExitsAtOnceIsNamedWithItsCode) {
@@ -151,7 +151,7 @@ TEST_F(LaunchTest, AFrameThatEndsTheConnectionIsNamedWithTheLimit) {
 }
 
 TEST_F(LaunchTest, AFrameThatEndsATcpConnectionAgainAndAgainIsNamedWithTheLimit) {
-  scene_.network.endpoint = "tcp://127.0.0.1:47616";
+  scene_.network.endpoint = "tcp://127.0.0.1:27616";
   add_body("left", "huge");
   scene_.bodies[0].second.launch = ConnectLaunch{5.0};
   ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", scene_.network.endpoint, "--body", "left"});
@@ -164,7 +164,7 @@ TEST_F(LaunchTest, AFrameThatEndsATcpConnectionAgainAndAgainIsNamedWithTheLimit)
 }
 
 TEST_F(LaunchTest, AConnectedSolverThatIsKilledIsGivenUpWhenItDoesNotComeBack) {
-  scene_.network.endpoint = "tcp://127.0.0.1:47617";
+  scene_.network.endpoint = "tcp://127.0.0.1:27617";
   options_.deadlines.reconnect = Milliseconds(300);
   add_body("left");
   scene_.bodies[0].second.launch = ConnectLaunch{5.0};
@@ -180,7 +180,7 @@ TEST_F(LaunchTest, AConnectedSolverThatIsKilledIsGivenUpWhenItDoesNotComeBack) {
 }
 
 TEST_F(LaunchTest, ASolverLeavesWhenItsCoordinatorEndsEarly) {
-  scene_.network.endpoint = "tcp://127.0.0.1:47618";
+  scene_.network.endpoint = "tcp://127.0.0.1:27618";
   add_body("left");
   scene_.bodies[0].second.launch = ConnectLaunch{5.0};
   ChildProcess solver(ABUT_FAKE_SOLVER, {"--connect", scene_.network.endpoint, "--body", "left"});
@@ -283,7 +283,7 @@ TEST_F(LaunchTest, ABodyThatIsRefusedDoesNotWaitForOneThatSomebodyElseStarts) {
 }
 
 TEST_F(LaunchTest, ASolverWithANameThatTheSceneDoesNotHaveIsRefused) {
-  scene_.network.endpoint = "tcp://127.0.0.1:47615";
+  scene_.network.endpoint = "tcp://127.0.0.1:27615";
   add_body("left");
   scene_.bodies[0].second.launch = ConnectLaunch{0.5};
   ChildProcess stranger(ABUT_FAKE_SOLVER,

@@ -229,7 +229,7 @@ class AwaitTest : public LaunchTest {
 TEST_F(AwaitTest, ProcessesThatSomebodyElseStartsReachTheStateOfLocalBodies) {
   FakeSubdomain left, right;
   const std::vector<std::uint64_t> here = play_both(left, right);
-  const std::string endpoint = "tcp://127.0.0.1:47633";
+  const std::string endpoint = "tcp://127.0.0.1:27633";
   await_at(endpoint);
   for (const bool shared : {false, true}) {
     scene_.bodies.clear();
@@ -258,18 +258,18 @@ TEST_F(AwaitTest, ProcessesThatSomebodyElseStartsReachTheStateOfLocalBodies) {
 }
 
 TEST_F(AwaitTest, AProcessThatNobodyStartsIsNamedWithItsCommand) {
-  await_at("tcp://127.0.0.1:47634", 0.3);
+  await_at("tcp://127.0.0.1:27634", 0.3);
   scene_.network.processes = 1;
   add_body("left");
   add_body("right");
   EXPECT_EQ(error_within(2.0, [this] { start(); }),
-            "body 'left' did not connect to tcp://127.0.0.1:47634 within 0.3 s | start "
-            "`abut-solver --connect tcp://127.0.0.1:47634 --process process-0 --body left --body "
+            "body 'left' did not connect to tcp://127.0.0.1:27634 within 0.3 s | start "
+            "`abut-solver --connect tcp://127.0.0.1:27634 --process process-0 --body left --body "
             "right`");
 }
 
 TEST_F(AwaitTest, ABodyWithTheNameOfASharedProcessIsRefused) {
-  await_at("tcp://127.0.0.1:47635");
+  await_at("tcp://127.0.0.1:27635");
   scene_.network.processes = 1;
   add_body("process-0");
   add_body("right");

@@ -180,7 +180,9 @@ def box_of(bodies: list[MovingBody]) -> tuple[list[float], list[float]]:
 
 def scale_of(motion: Motion, key: str) -> Scale | None:
     """Without the highest hundredth where these would leave all others one colour. None
-    where nothing is told, or all is zero."""
+    where nothing is told, or all is zero. Of a contact pressure, which most nodes have none of,
+    from zero on: of the side that does not find the contact nodes may have a part of the force
+    that is shared out to them against its sign."""
     rows = [values for body in motion.bodies for values in body.values.get(key, [])
             if values is not None and len(values)]
     least, most = min(map(min, rows), default=0.0), max(map(max, rows), default=0.0)
@@ -188,9 +190,12 @@ def scale_of(motion: Motion, key: str) -> Scale | None:
         return None
     step = 1 + sum(map(len, rows)) // SAMPLES
     numbers = sorted(v for row in rows for v in row[::step]) or [least, most]
+    presses = key == "pressure" and most > 0.0
+    if presses:
+        numbers = [v for v in numbers if v > 1e-9 * most] or [most]
     rest = (len(numbers) - 1) // 100
     low, high = numbers[rest], numbers[-1 - rest]
-    if least < -1e-6 * abs(most):  # of both signs: zero is in the middle
+    if least < -1e-6 * abs(most) and not presses:  # of both signs: zero is in the middle
         reach = max(abs(low), abs(high))
         bound = max(abs(least), abs(most))
         reach = bound if bound < 1.5 * reach or not reach else reach

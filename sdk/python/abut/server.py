@@ -9,6 +9,7 @@ import traceback
 
 import xxhash
 import zmq
+from zmq.utils.monitor import recv_monitor_message
 
 from abut.access import read_body_keys, require_closed_endpoint
 from abut.answers import Answers, told_fault
@@ -42,7 +43,10 @@ class Server:
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 500)
         self.identify(keys)
-        self.lost = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+        self.keyed = bool(keys)
+        self.lost = self.socket.get_monitor_socket(
+            zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_AUTH |
+            zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL)
         try:
             self.socket.connect(endpoint)
         except zmq.ZMQError as error:
@@ -68,8 +72,10 @@ class Server:
             if not greeted:
                 self.socket.send(hello)
             if not self.socket.poll(1000):
-                if self.lost.poll(0) or (not greeted and time.monotonic() > until):
-                    sys.exit(f"body {self.name}: no coordinator (any more) at {self.endpoint}")
+                if self.left() or (not greeted and time.monotonic() > until):
+                    other = "other keys" if self.keyed else "keys: --keys DIR"
+                    sys.exit(f"body {self.name}: no coordinator (any more) at {self.endpoint}" +
+                             ("" if greeted else f", or one that asks for {other}"))
                 continue
             ask = self.opened(self.socket.recv())
             if ask is None:
@@ -82,6 +88,27 @@ class Server:
             self.socket.send(self.answer)
             if ask.HasField("finish"):
                 return
+
+    def left(self) -> bool:
+        """Whether the connection has ended; leaves with the reason where keys do not fit."""
+        while self.lost.poll(0):
+            event = recv_monitor_message(self.lost)
+            if event["event"] == zmq.EVENT_DISCONNECTED:
+                return True
+            if event["event"] == zmq.EVENT_HANDSHAKE_FAILED_AUTH:
+                self.leave(f"the coordinator at {self.endpoint} does not let this key in. Give the "
+                           "key of a body that the run waits for, as the coordinator's "
+                           "network.keys has it.")
+            if event["value"] == zmq.PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH:
+                self.leave(f"the coordinator at {self.endpoint} " +
+                           ("has no keys. Give its run network.keys, or leave --keys out."
+                            if self.keyed else "lets nobody in without a key. Give --keys DIR, "
+                            "with the body's key and the coordinator's public one."))
+        return False
+
+    def leave(self, reason: str):
+        print(f"body {self.name}: --keys: {reason}", file=sys.stderr)
+        sys.exit(2)
 
     def opened(self, frame: bytes):
         """The request of a sound frame for this process; None of any other."""
