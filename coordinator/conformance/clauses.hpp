@@ -23,6 +23,8 @@ struct Clause {
 std::span<const Clause> clauses_of_windows();
 /// What probes must tell.
 std::span<const Clause> clauses_of_kernels();
+/// What flights must keep within.
+std::span<const Clause> clauses_of_speeds();
 /// What forces must do.
 std::span<const Clause> clauses_of_forces();
 /// What motion must be: velocities, and points that forces act on.

@@ -247,7 +247,10 @@ Push pulse(int port, const std::vector<double>& pattern, const PortKernel& kerne
 void compare(const Waveform& one, const Waveform& other, const PortKernel& kernel,
              std::size_t pattern, double force, double tolerance, const Port& port) {
   const std::size_t width = index(kernel.width);
-  double most = 0.0, off = 0.0, size = 0.0;
+  // Of the way that loads and velocities carry a port, solvers leave so much: of a body that has
+  // flown far it is seen beside the way by a light force.
+  constexpr double left_by_solvers = 1.0e-9;
+  double most = 0.0, off = 0.0, size = 0.0, carried = 0.0;
   std::size_t worst = 0;
   for (std::size_t i = 1; i < one.size(); ++i)
     for (std::size_t k = 0; k < width; ++k) {
@@ -256,10 +259,11 @@ void compare(const Waveform& one, const Waveform& other, const PortKernel& kerne
       const double went = one.u[i * width + k] - other.u[i * width + k];
       most = std::max({most, std::abs(told), std::abs(went)});
       size = std::max(size, std::abs(one.u[i * width + k]));
+      carried = std::max(carried, std::abs(other.u[i * width + k] - other.u[k]));
       if (std::abs(told - went) > off) worst = i;
       off = std::max(off, std::abs(told - went));
     }
-  if (off > tolerance * most + 64.0 * one_rounding * size)
+  if (off > tolerance * most + 64.0 * one_rounding * size + left_by_solvers * carried)
     throw BrokenClause(
         fmt::format("port {} moves by a pulse of force otherwise than its kernel says: {:.3g} of "
                     "the way off at the end of substep {}",

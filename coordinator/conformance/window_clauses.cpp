@@ -340,11 +340,15 @@ constexpr Clause clauses_on_windows[] = {
     {"restore", "a state is returned to exactly; a reply is of state and request", restore},
     {"hash", "other states have other hashes", hashes},
     {"boxes", "boxes hold what the points of ports have swept", boxes},
+};
+
+constexpr Clause clauses_on_speeds[] = {
     {"speed", "velocities, or a bound of them, hold while nothing touches the body", speeds},
 };
 
 }  // namespace
 
+std::span<const Clause> clauses_of_speeds() { return clauses_on_speeds; }
 std::span<const Clause> clauses_of_windows() { return clauses_on_windows; }
 
 }  // namespace abut
